@@ -1,0 +1,2 @@
+//! The program `depthplanes`.
+fn main() {}

@@ -1,0 +1,5 @@
+//! Bytes to frames and detections to bytes: the only crate with codecs.
+
+mod frame;
+
+pub use frame::{Frame, Pixels};

@@ -1,0 +1,206 @@
+//! What a map's numbers mean, and the pinhole camera that saw them.
+//!
+//! Pixel coordinates are (u, v) = (column, row) with pixel centres at integers. Camera coordinates
+//! are the optical frame: x right, y down, z forward, metres.
+//!
+//! A plane `n . P + d = 0` seen by a pinhole camera is exactly affine in inverse depth
+//! (Woehler, *3D Computer Vision*, eq. 1.131-1.134): with the ray
+//! `r = ((u - cx)/fx, (v - cy)/fy, 1)` and `P = z r`, `1/z = m . r` where `m = -n / d`. Disparity is
+//! affine in inverse depth (paper, eq. 6), so the same holds there.
+
+use crate::error::{Error, Result};
+
+/// Pinhole intrinsics in pixels. `fy` (and `fx`) may be negative: ICL-NUIM's image y axis points up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Intrinsics {
+    /// Focal length along u, pixels.
+    pub fx: f64,
+    /// Focal length along v, pixels.
+    pub fy: f64,
+    /// Principal point, column.
+    pub cx: f64,
+    /// Principal point, row.
+    pub cy: f64,
+}
+
+impl Intrinsics {
+    /// Checked intrinsics.
+    ///
+    /// # Errors
+    /// [`Error::Camera`] unless all four are finite and both focal lengths differ from 0.
+    pub fn new(fx: f64, fy: f64, cx: f64, cy: f64) -> Result<Self> {
+        for (name, given) in [("fx", fx), ("fy", fy)] {
+            if !given.is_finite() || given == 0.0 {
+                return Err(Error::Camera { name, given, accepted: "a finite focal length in pixels, not 0" });
+            }
+        }
+        for (name, given) in [("cx", cx), ("cy", cy)] {
+            if !given.is_finite() {
+                return Err(Error::Camera { name, given, accepted: "a finite pixel coordinate" });
+            }
+        }
+        Ok(Intrinsics { fx, fy, cx, cy })
+    }
+
+    /// The ray through pixel (u, v), scaled so that its z is 1.
+    #[inline]
+    pub fn ray(&self, u: f64, v: f64) -> [f64; 3] {
+        [(u - self.cx) / self.fx, (v - self.cy) / self.fy, 1.0]
+    }
+
+    /// Pixel (u, v) of a point in front of the camera, metres in.
+    #[inline]
+    pub fn project(&self, point_m: [f64; 3]) -> [f64; 2] {
+        let [x, y, z] = point_m;
+        [self.fx * x / z + self.cx, self.fy * y / z + self.cy]
+    }
+}
+
+/// What the numbers in a map mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Measure {
+    /// Depth along the optical axis: `z = metres * value`.
+    Depth {
+        /// Metres per map unit.
+        metres: f64,
+    },
+    /// Affine in inverse depth: `1/z = slope * value + offset`, in 1/m. Disparity of a known rig
+    /// ([`Measure::stereo`]), raw Kinect.
+    InverseDepth {
+        /// 1/m per map unit.
+        slope: f64,
+        /// 1/m at value 0.
+        offset: f64,
+    },
+    /// Affine in inverse depth by unknown factors: disparity of an unknown rig. Planes are found
+    /// in it as well as in any other; metric output needs the rig.
+    Disparity,
+}
+
+impl Measure {
+    /// Depth with a unit.
+    ///
+    /// # Errors
+    /// [`Error::Camera`] unless `metres` per unit is finite and positive.
+    pub fn depth(metres: f64) -> Result<Self> {
+        positive("metres per map unit", metres)?;
+        Ok(Measure::Depth { metres })
+    }
+
+    /// Disparity of a rectified pair (paper, eq. 6: `z = f T / |xL - xR|`; with the Middlebury
+    /// `doffs` term, `z = f T / (d + doffs)`): `pixels_per_unit` turns map values into pixels,
+    /// `focal_px` is f in pixels, `baseline_m` is T in metres, `doffs_px` the difference of the two
+    /// principal points in pixels (0 for most rigs).
+    ///
+    /// # Errors
+    /// [`Error::Camera`] unless the first three are finite and positive and the last is finite.
+    pub fn stereo(pixels_per_unit: f64, focal_px: f64, baseline_m: f64, doffs_px: f64) -> Result<Self> {
+        positive("pixels of disparity per map unit", pixels_per_unit)?;
+        positive("focal length in pixels", focal_px)?;
+        positive("baseline in metres", baseline_m)?;
+        if !doffs_px.is_finite() {
+            return Err(Error::Camera { name: "doffs", given: doffs_px, accepted: "a finite number of pixels" });
+        }
+        let f_t = focal_px * baseline_m;
+        Ok(Measure::InverseDepth { slope: pixels_per_unit / f_t, offset: doffs_px / f_t })
+    }
+
+    /// Inverse depth in 1/m of a map value; `None` where the measure is unknown or the value lies
+    /// at or behind infinity.
+    #[inline]
+    pub fn inverse_depth(&self, value: f64) -> Option<f64> {
+        let q = match *self {
+            Measure::Depth { metres } => 1.0 / (metres * value),
+            Measure::InverseDepth { slope, offset } => slope * value + offset,
+            Measure::Disparity => return None,
+        };
+        (q.is_finite() && q > 0.0).then_some(q)
+    }
+
+    /// Depth in metres of a map value (eq. 6); `None` as for [`Measure::inverse_depth`].
+    #[inline]
+    pub fn depth_m(&self, value: f64) -> Option<f64> {
+        self.inverse_depth(value).map(f64::recip)
+    }
+
+    /// The map value that means a depth in metres (eq. 6 the other way); `None` for
+    /// [`Measure::Disparity`] or a depth that is not positive.
+    #[inline]
+    pub fn value(&self, depth_m: f64) -> Option<f64> {
+        if !(depth_m > 0.0 && depth_m.is_finite()) {
+            return None;
+        }
+        match *self {
+            Measure::Depth { metres } => Some(depth_m / metres),
+            Measure::InverseDepth { slope, offset } => Some((depth_m.recip() - offset) / slope),
+            Measure::Disparity => None,
+        }
+    }
+}
+
+fn positive(name: &'static str, given: f64) -> Result<()> {
+    if given.is_finite() && given > 0.0 {
+        Ok(())
+    } else {
+        Err(Error::Camera { name, given, accepted: "a finite number above 0" })
+    }
+}
+
+/// Everything known about how a map came about. Detection needs none of it; metric planes need
+/// both parts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensor {
+    /// What the numbers mean.
+    pub measure: Measure,
+    /// The camera, if known.
+    pub intrinsics: Option<Intrinsics>,
+}
+
+impl Default for Sensor {
+    /// Depth in millimetres, camera unknown.
+    fn default() -> Self {
+        Sensor { measure: Measure::Depth { metres: 0.001 }, intrinsics: None }
+    }
+}
+
+/// A plane in camera coordinates, Hessian normal form `normal . P + distance = 0`, metres. The
+/// normal has length 1 and points to the camera's side, so `distance >= 0` is the camera's distance
+/// from the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hessian {
+    /// Unit normal in camera coordinates, towards the camera.
+    pub normal: [f64; 3],
+    /// Distance of the camera from the plane, metres.
+    pub distance: f64,
+}
+
+impl Hessian {
+    /// The plane whose inverse depth is `1/z = a u + b v + c` (1/m, pixels); `None` if all three
+    /// are 0 (a plane at infinity).
+    ///
+    /// `m = (a fx, b fy, c + a cx + b cy)`, `normal = -m / |m|`, `distance = 1 / |m|`.
+    pub fn from_inverse_depth(abc: [f64; 3], camera: &Intrinsics) -> Option<Self> {
+        let m = ray_coefficients(abc, camera);
+        let length = m.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if !(length > 0.0 && length.is_finite()) {
+            return None;
+        }
+        Some(Hessian { normal: m.map(|x| -x / length), distance: length.recip() })
+    }
+
+    /// The coefficients (a, b, c) of `1/z = a u + b v + c`, the other way; `None` for a plane
+    /// through the camera's centre.
+    pub fn inverse_depth(&self, camera: &Intrinsics) -> Option<[f64; 3]> {
+        if self.distance == 0.0 {
+            return None;
+        }
+        let m = self.normal.map(|x| -x / self.distance);
+        let (a, b) = (m[0] / camera.fx, m[1] / camera.fy);
+        Some([a, b, m[2] - a * camera.cx - b * camera.cy])
+    }
+}
+
+/// `m` with `1/z = m . r` for the ray r of [`Intrinsics::ray`].
+pub(crate) fn ray_coefficients([a, b, c]: [f64; 3], camera: &Intrinsics) -> [f64; 3] {
+    [a * camera.fx, b * camera.fy, c + a * camera.cx + b * camera.cy]
+}

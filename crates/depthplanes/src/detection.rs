@@ -1,0 +1,106 @@
+//! The answer: a label image of the input's shape and one record for each plane.
+
+use crate::camera::Hessian;
+
+/// What a method found in one map. A [`crate::Detector`] owns one and reuses its memory.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Detection {
+    /// Columns of the map and of `labels`.
+    pub width: usize,
+    /// Rows of the map and of `labels`.
+    pub height: usize,
+    /// Row by row, `width * height`: 0 = no plane, 1.. = `planes[label - 1]`.
+    pub labels: Vec<u16>,
+    /// By decreasing pixel count; equal counts by first pixel in raster order.
+    pub planes: Vec<Plane>,
+    /// Valid pixels of the map that was given.
+    pub valid_pixels: usize,
+    /// Missing pixels that enhancing filled (paper, section 3b).
+    pub filled_pixels: usize,
+}
+
+impl Detection {
+    /// Pixels that belong to some plane.
+    pub fn labelled_pixels(&self) -> usize {
+        self.planes.iter().map(|plane| plane.pixel_count).sum()
+    }
+
+    /// Share (0..=1) of the valid and filled pixels that belong to some plane, the paper's
+    /// "percentage of valid points"; 0 for a map without a valid pixel.
+    pub fn labelled_share(&self) -> f64 {
+        share(self.labelled_pixels(), self.valid_pixels + self.filled_pixels)
+    }
+}
+
+pub(crate) fn share(part: usize, whole: usize) -> f64 {
+    if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
+}
+
+/// One plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plane {
+    /// Its value in the label image, 1..=65535.
+    pub label: u16,
+    /// Pixels that carry the label.
+    pub pixel_count: usize,
+    /// `pixel_count` as a share (0..=1) of the map's valid (and filled) pixels.
+    pub share_of_valid: f64,
+    /// Smallest box around the pixels.
+    pub bounding_box: PixelBox,
+    /// Mean (u, v) of the pixels.
+    pub centroid: [f64; 2],
+    /// The least-squares plane in the map's own units; `None` if the pixels lie in one row or one
+    /// column, where no plane is determined.
+    pub fit: Option<MapFit>,
+    /// The plane in camera coordinates; `None` without intrinsics and a metric measure, or without
+    /// a fit.
+    pub metric: Option<MetricPlane>,
+}
+
+/// Columns `u_min..=u_max`, rows `v_min..=v_max`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PixelBox {
+    /// Leftmost column.
+    pub u_min: u32,
+    /// Topmost row.
+    pub v_min: u32,
+    /// Rightmost column, inclusive.
+    pub u_max: u32,
+    /// Bottom row, inclusive.
+    pub v_max: u32,
+}
+
+impl PixelBox {
+    /// Pixels inside the box.
+    pub fn area(&self) -> usize {
+        (self.u_max - self.u_min + 1) as usize * (self.v_max - self.v_min + 1) as usize
+    }
+}
+
+/// `value = gradient[0] u + gradient[1] v + offset`, least squares over the plane's pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapFit {
+    /// The depth gradient (-A/C, -B/C) of the paper's eq. 5, map units per pixel along u and v.
+    pub gradient: [f64; 2],
+    /// The plane's value at pixel (0, 0), map units.
+    pub offset: f64,
+    /// Root mean square residual, map units.
+    pub rms: f64,
+}
+
+/// A plane in metres and camera coordinates (x right, y down, z forward).
+///
+/// Fitted by least squares where the sensor's error is near constant: in inverse depth for depth
+/// maps, in disparity for disparity maps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MetricPlane {
+    /// `normal . P + distance = 0`, the normal towards the camera.
+    pub plane: Hessian,
+    /// Root mean square distance of the points from the plane, metres.
+    pub rms_m: f64,
+    /// Mean of the points, metres.
+    pub centroid_m: [f64; 3],
+    /// Covariance of (nx, ny, nz, distance), from the residuals of the fit; the normal's part has
+    /// rank 2, since a unit vector cannot change its length. Row by row.
+    pub covariance: [[f64; 4]; 4],
+}

@@ -1,0 +1,84 @@
+//! The front door: one method, one sensor, and the memory they reuse from frame to frame.
+
+use crate::camera::Sensor;
+use crate::detection::Detection;
+use crate::error::{Error, Result};
+use crate::map::AnyView;
+use crate::methods::{Job, Method};
+
+/// Finds planes in frame after frame; after the first frame of a size it allocates nothing.
+///
+/// ```
+/// use depthplanes::{DepthView, Detector, Ngaf};
+/// // Two surfaces, one 1.0 m and one 2.0 m away, and a hole.
+/// let depth_mm: [u16; 20] = [
+///     1000, 1000, 1001, 2000, 2000,
+///     1000, 1001, 1001, 2001, 2001,
+///     1001, 1001,    0, 2001, 2002,
+///     1001, 1002, 1002, 2002, 2002,
+/// ];
+/// let mut detector = Detector::new(Ngaf { theta: 1.0, min: 7, ..Ngaf::default() })?;
+/// let found = detector.detect(DepthView::new(&depth_mm, 5, 4)?)?;
+/// assert_eq!(found.planes.len(), 2);
+/// assert_eq!(found.planes[0].pixel_count, 11);
+/// assert_eq!(found.labels[..5], [1, 1, 1, 2, 2]);
+/// # Ok::<(), depthplanes::Error>(())
+/// ```
+pub struct Detector {
+    method: Box<dyn Method>,
+    sensor: Sensor,
+    threads: usize,
+    detection: Detection,
+}
+
+impl Detector {
+    /// A detector of the given method, one thread, camera unknown.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if the method's parameters are out of range.
+    pub fn new<M>(method: M) -> Result<Self>
+    where
+        M: TryInto<Box<dyn Method>, Error = Error>,
+    {
+        Ok(Self::from_method(method.try_into()?))
+    }
+
+    /// A detector of a method that was built by name ([`crate::methods::find`]).
+    pub fn from_method(method: Box<dyn Method>) -> Self {
+        Detector { method, sensor: Sensor::default(), threads: 1, detection: Detection::default() }
+    }
+
+    /// States what the map's numbers mean and which camera saw them; needed for metric planes.
+    pub fn sensor(mut self, sensor: Sensor) -> Self {
+        self.sensor = sensor;
+        self
+    }
+
+    /// Threads for large maps, 1 and up (0 counts as 1). The answer is the same for any number.
+    pub fn threads(mut self, threads: usize) -> Self {
+        self.threads = threads.max(1);
+        self
+    }
+
+    /// Finds planes in one map.
+    ///
+    /// # Errors
+    /// [`Error::TooManyPlanes`] if there are more planes than 16-bit labels can name.
+    pub fn detect<'m>(&mut self, map: impl Into<AnyView<'m>>) -> Result<&Detection> {
+        self.detect_observed(map, &mut |_| ())
+    }
+
+    /// As [`Detector::detect`]; `observer` is told the name of each stage as it ends, for timing.
+    ///
+    /// # Errors
+    /// As [`Detector::detect`].
+    pub fn detect_observed<'m>(
+        &mut self,
+        map: impl Into<AnyView<'m>>,
+        observer: &mut dyn FnMut(&'static str),
+    ) -> Result<&Detection> {
+        let mut job = Job { sensor: self.sensor, threads: self.threads, observer };
+        self.method.run(map.into(), &mut job, &mut self.detection)?;
+        Ok(&self.detection)
+    }
+}

@@ -1,0 +1,124 @@
+//! What can be wrong with a call: the map, a parameter, a camera, or the answer's size.
+//!
+//! Every message says what was given and what is accepted; none is raised after the door
+//! (once a map and the parameters are accepted, only [`Error::TooManyPlanes`] can follow).
+
+use std::fmt;
+
+/// The library's one error type.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Error {
+    /// A side of the map is 0 or longer than [`crate::map::MAX_SIDE`].
+    Size {
+        /// Columns given.
+        width: usize,
+        /// Rows given.
+        height: usize,
+    },
+    /// The pixel slice does not hold the stated map.
+    Length {
+        /// Pixels given.
+        given: usize,
+        /// Fewest pixels that hold the map.
+        least: usize,
+        /// Most pixels that are accepted for it.
+        most: usize,
+    },
+    /// Rows overlap: the stride is shorter than the width, or overflows.
+    Stride {
+        /// Pixels from one row's start to the next, as given.
+        stride: usize,
+        /// Columns given.
+        width: usize,
+    },
+    /// A valid range whose low end is not below its high end.
+    ValidRange {
+        /// Low end given.
+        low: f64,
+        /// High end given.
+        high: f64,
+    },
+    /// A parameter out of its range.
+    Parameter {
+        /// Its name in the method's table.
+        name: &'static str,
+        /// The value given.
+        given: f64,
+        /// What is accepted.
+        accepted: String,
+    },
+    /// A name that no table knows.
+    Unknown {
+        /// What was looked for: `method`, `parameter`, `kernel` ...
+        what: &'static str,
+        /// The name given.
+        given: String,
+        /// The names there are.
+        accepted: String,
+    },
+    /// A camera or a measure that describes no real one.
+    Camera {
+        /// The quantity at fault.
+        name: &'static str,
+        /// The value given.
+        given: f64,
+        /// What is accepted.
+        accepted: &'static str,
+    },
+    /// More planes than 16-bit labels can name.
+    TooManyPlanes {
+        /// Planes found.
+        found: usize,
+    },
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Error::Size { width, height } => write!(
+                f,
+                "the map is {width} x {height} pixels; each side must be 1 to {} and the whole at most {} pixels",
+                crate::map::MAX_SIDE,
+                crate::map::MAX_PIXELS
+            ),
+            Error::Length { given, least, most } if least == most => {
+                write!(
+                    f,
+                    "{given} pixels were given, the stated size needs {least}; check width, height and pixel type"
+                )
+            }
+            Error::Length { given, least, most } => write!(
+                f,
+                "{given} pixels were given, the stated size and stride need {least} to {most}; check width, height and stride"
+            ),
+            Error::Stride { stride, width } => {
+                write!(
+                    f,
+                    "the stride is {stride} pixels, it must be at least the width ({width}) and fit in memory; it counts pixels, not bytes"
+                )
+            }
+            Error::ValidRange { low, high } => {
+                write!(f, "the valid range {low} to {high} is empty; its low end must be below its high end")
+            }
+            Error::Parameter { name, given, accepted } => {
+                write!(f, "parameter `{name}` is {given}; accepted: {accepted}")
+            }
+            Error::Unknown { what, given, accepted } => {
+                write!(f, "there is no {what} `{given}`; there are: {accepted}")
+            }
+            Error::Camera { name, given, accepted } => {
+                write!(f, "the camera's {name} is {given}; accepted: {accepted}")
+            }
+            Error::TooManyPlanes { found } => write!(
+                f,
+                "{found} planes were found and labels have 16 bits (65535 at most); raise `min` or `theta`, or enhance the map first"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// `Result` with the library's [`Error`].
+pub type Result<T> = std::result::Result<T, Error>;

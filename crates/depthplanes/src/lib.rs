@@ -1,0 +1,20 @@
+//! Finds planes in depth and disparity maps, in real time, on ordinary hardware.
+//!
+//! The flow, read left to right:
+//! `DepthView -> enhance -> group -> select -> fit -> Detection`.
+//!
+//! [`Detector`] runs a whole method over frame after frame; the stages stand alone as well.
+
+pub mod camera;
+pub mod detection;
+mod detector;
+pub mod error;
+pub mod map;
+pub mod methods;
+
+pub use camera::{Hessian, Intrinsics, Measure, Sensor};
+pub use detection::{Detection, Plane};
+pub use detector::Detector;
+pub use error::{Error, Result};
+pub use map::{AnyView, DepthView, Pixel};
+pub use methods::Ngaf;
