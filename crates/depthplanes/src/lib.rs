@@ -11,6 +11,7 @@ mod detector;
 pub mod error;
 pub mod map;
 pub mod methods;
+pub mod scene;
 
 pub use camera::{Hessian, Intrinsics, Measure, Sensor};
 pub use detection::{Detection, Plane};
