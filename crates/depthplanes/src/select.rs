@@ -4,10 +4,13 @@
 //! the label of the plane it belongs to.
 
 use crate::error::{Error, Result};
-use crate::group::{Groups, Run, SLACK, reserve_to};
+use crate::group::{Groups, Run, reserve_to};
 
 /// Most planes that 16-bit labels can name.
 pub const MAX_PLANES: usize = u16::MAX as usize;
+
+/// Groups that are looked at together.
+const BLOCK: usize = 32;
 
 /// A group that was kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,8 +26,7 @@ pub struct Kept {
 pub struct Selection {
     kept: Vec<Kept>,
     label_of_group: Vec<u16>,
-    /// Of run i at i + 1, with room to read beyond the end.
-    labels: Vec<u16>,
+    label_of_component: Vec<u16>,
 }
 
 impl Selection {
@@ -33,44 +35,40 @@ impl Selection {
     /// # Errors
     /// [`Error::TooManyPlanes`] if there are more than [`MAX_PLANES`]; nothing is selected then.
     pub fn select(&mut self, groups: &Groups, min: u32) -> Result<&[Kept]> {
-        self.kept.clear();
-        let most_runs = groups.width() * groups.height();
-        reserve_to(&mut self.label_of_group, most_runs);
-        reserve_to(&mut self.labels, most_runs + SLACK + 1);
+        let most_groups = groups.width() * groups.height();
+        reserve_to(&mut self.kept, MAX_PLANES.min(most_groups));
+        reserve_to(&mut self.label_of_group, most_groups);
+        reserve_to(&mut self.label_of_component, most_groups);
         let found = groups.sizes().iter().filter(|&&size| size > min).count();
         if found > MAX_PLANES {
             return Err(Error::TooManyPlanes { found });
         }
-        self.kept.reserve(MAX_PLANES);
-        let larger = (0u32..).zip(groups.sizes()).filter(|&(_, &size)| size > min);
-        self.kept.extend(larger.map(|(group, &pixel_count)| Kept { group, pixel_count }));
-        // Groups are counted by first pixel, so equal sizes are ordered by first pixel.
+        // Most groups of a noisy map are tiny: a block of them is passed over by one test.
+        for (first, block) in (0u32..).step_by(BLOCK).zip(groups.sizes().chunks(BLOCK)) {
+            if block.iter().fold(false, |any, &size| any | (size > min)) {
+                let larger = (first..).zip(block).filter(|&(_, &size)| size > min);
+                self.kept.extend(larger.map(|(group, &pixel_count)| Kept { group, pixel_count }));
+            }
+        }
+        // Groups are counted by first pixel, so equal sizes are ordered by it.
         self.kept.sort_unstable_by_key(|kept| (std::cmp::Reverse(kept.pixel_count), kept.group));
-        self.label_runs(groups);
+        self.label_groups(groups);
         Ok(&self.kept)
     }
 
     /// Drops the kept groups that `keep` refuses; it is called in order of label. The others move up.
     pub fn retain(&mut self, groups: &Groups, mut keep: impl FnMut(usize) -> bool) {
-        let before = self.kept.len();
         let mut index = 0..;
         self.kept.retain(|_| keep(index.next().expect("an endless range")));
-        if self.kept.len() < before {
-            self.label_runs(groups);
-        }
+        self.label_groups(groups);
     }
 
-    fn label_runs(&mut self, groups: &Groups) {
-        let labels = &mut self.label_of_group;
-        labels.clear();
-        labels.resize(groups.count(), 0);
+    fn label_groups(&mut self, groups: &Groups) {
+        self.label_of_group.clear();
+        self.label_of_group.resize(groups.count(), 0);
         for (label, kept) in (1..).zip(&self.kept) {
-            labels[kept.group as usize] = label;
+            self.label_of_group[kept.group as usize] = label;
         }
-        self.labels.clear();
-        self.labels.push(0);
-        self.labels.extend(groups.group_of_run().iter().map(|&group| labels[group as usize]));
-        self.labels.resize(1 + groups.run_count() + SLACK, 0);
     }
 
     /// The kept groups; label 1 is the first.
@@ -78,19 +76,14 @@ impl Selection {
         &self.kept
     }
 
-    /// For each run of the map in raster order its plane's label, 0 for none.
-    pub fn label_of_run(&self) -> &[u16] {
-        &self.labels[1..self.labels.len() - SLACK]
-    }
-
     /// Writes the label image, row by row, `width * height`.
-    pub fn paint(&self, groups: &Groups, labels: &mut Vec<u16>) {
+    pub fn paint(&mut self, groups: &Groups, labels: &mut Vec<u16>) {
         labels.resize(groups.width() * groups.height(), 0);
-        groups.paint(&self.labels, labels);
+        groups.paint(&self.label_of_group, &mut self.label_of_component, labels);
     }
-}
 
-/// The runs of the kept groups in raster order, each with its plane's label, 1 and up.
-pub fn labelled_runs<'a>(groups: &'a Groups, selection: &'a Selection) -> impl Iterator<Item = (Run, u16)> + 'a {
-    groups.runs().zip(selection.label_of_run().iter().copied()).filter(|&(_, label)| label > 0)
+    /// The runs of the kept groups in raster order, each with its plane's label, 1 and up.
+    pub fn runs<'a>(&'a self, groups: &'a Groups) -> impl Iterator<Item = (Run, u16)> + 'a {
+        groups.runs().map(|run| (run, self.label_of_group[run.group as usize])).filter(|&(_, label)| label > 0)
+    }
 }

@@ -7,8 +7,8 @@
 //! answer is the same for every kernel and any number of threads, since components do not depend on
 //! the order of unions and groups are numbered by their first pixel.
 //!
-//! How: `strip::scan` turns a strip of rows into runs and a forest of them, `strip::stitch` joins the
-//! strips, `forest::flatten` numbers the groups and adds up their sizes.
+//! How: `strip::scan` finds the components of a strip of rows, `strip::stitch` joins those of
+//! neighbouring strips, `forest::flatten` numbers the groups and adds up their sizes.
 
 mod forest;
 mod kernels;
@@ -16,9 +16,10 @@ mod strip;
 
 use crate::error::{Error, Result};
 use crate::map::{DepthView, Pixel, Validity};
-pub(crate) use kernels::SLACK;
 pub(crate) use kernels::{Compiled, Isa};
 pub use kernels::{Kernel, kernels};
+#[cfg(feature = "parallel")]
+use rayon::prelude::*;
 pub(crate) use strip::RowMasks;
 use strip::Strip;
 
@@ -88,8 +89,7 @@ impl Grouper {
 
     /// A grouper on a certain kernel of [`kernels`].
     pub fn with_kernel(kernel: &'static Kernel) -> Self {
-        let (strips, group_of_run, sizes) = Default::default();
-        Grouper { groups: Groups { kernel, width: 0, height: 0, strips, group_of_run, sizes } }
+        Grouper { groups: Groups::new(kernel) }
     }
 
     /// Groups one map on `threads` threads (0 counts as 1; one without the feature `parallel`).
@@ -112,7 +112,6 @@ impl Grouper {
         groups.prepare(map, threads);
         groups.scan_strips(map, rule);
         groups.join_strips(map, rule);
-        forest::flatten(&mut groups.group_of_run, &mut groups.sizes, &groups.strips);
         groups
     }
 
@@ -122,73 +121,73 @@ impl Grouper {
     }
 }
 
-/// Runs `work` on each item; on several threads if there are several items.
-fn in_parallel<I: Send>(items: &mut [I], work: impl Fn(&mut I) + Send + Sync) {
-    match items {
-        [only] => work(only),
-        #[cfg(feature = "parallel")]
-        many => {
-            use rayon::prelude::*;
-            many.par_iter_mut().for_each(work);
-        }
-        #[cfg(not(feature = "parallel"))]
-        many => many.iter_mut().for_each(work),
-    }
-}
-
-/// Fewest rows that are worth a strip of their own.
-const LEAST_STRIP_ROWS: usize = 32;
+/// Pixels of a strip, about. Its forest, 4 bytes for each of its runs, is to stay in a core's cache,
+/// and frames up to 640 x 480 are to be spared the joining.
+const STRIP_PIXELS: usize = 1 << 19;
 
 /// The groups of a map: its runs, and for each the group it belongs to.
 #[derive(Debug)]
 pub struct Groups {
     kernel: &'static Kernel,
+    threads: usize,
     width: usize,
     height: usize,
     strips: Vec<Strip>,
-    /// For each run, in raster order, its parent in the forest, and after flattening its group.
-    group_of_run: Vec<u32>,
+    /// For each component of a strip, strip after strip, its parent while strips are joined, then its
+    /// group.
+    group_of_component: Vec<u32>,
     /// The pixels of each group.
     sizes: Vec<u32>,
 }
 
 impl Groups {
-    fn prepare<T: Pixel>(&mut self, map: &DepthView<'_, T>, threads: usize) {
-        (self.width, self.height) = (map.width(), map.height());
-        let threads = if cfg!(feature = "parallel") { threads } else { 1 };
-        let count = threads.clamp(1, self.height.div_ceil(LEAST_STRIP_ROWS));
-        self.strips.resize_with(count, Strip::default);
-        for (k, strip) in self.strips.iter_mut().enumerate() {
-            let rows = self.height * k / count..self.height * (k + 1) / count;
-            strip.prepare(self.width, rows);
-        }
-        let most_runs = self.width * self.height;
-        reserve_to(&mut self.group_of_run, most_runs);
-        reserve_to(&mut self.sizes, most_runs + 1);
+    fn new(kernel: &'static Kernel) -> Self {
+        let (strips, group_of_component, sizes) = Default::default();
+        Groups { kernel, threads: 1, width: 0, height: 0, strips, group_of_component, sizes }
     }
 
-    /// Scans each strip, side by side where threads are to be had.
+    fn prepare<T: Pixel>(&mut self, map: &DepthView<'_, T>, threads: usize) {
+        (self.width, self.height, self.threads) = (map.width(), map.height(), threads);
+        let height = (STRIP_PIXELS / self.width).clamp(1, self.height);
+        self.strips.resize_with(self.height.div_ceil(height), Strip::default);
+        for (strip, first) in self.strips.iter_mut().zip((0..).step_by(height)) {
+            strip.prepare(self.width, first..(first + height).min(self.height));
+        }
+        reserve_to(&mut self.group_of_component, map.area());
+        reserve_to(&mut self.sizes, map.area());
+    }
+
+    /// The components of each strip.
     fn scan_strips<T: Pixel>(&mut self, map: &DepthView<'_, T>, rule: &LinkRule<T>) {
         let kernel = self.kernel;
-        in_parallel(&mut self.strips, |strip| kernel.scan(map, rule, strip));
+        #[cfg(feature = "parallel")]
+        if self.threads > 1 {
+            let share = self.strips.len().div_ceil(self.threads);
+            let shares = self.strips.par_chunks_mut(share);
+            return shares.for_each(|share| share.iter_mut().for_each(|strip| kernel.scan(map, rule, strip)));
+        }
+        self.strips.iter_mut().for_each(|strip| kernel.scan(map, rule, strip));
     }
 
-    /// One forest from the strips' forests: appended, then united along the borders.
+    /// Groups from the strips' components, united along the borders.
     fn join_strips<T: Pixel>(&mut self, map: &DepthView<'_, T>, rule: &LinkRule<T>) {
-        if let [only] = &mut self.strips[..] {
-            std::mem::swap(&mut self.group_of_run, &mut only.parent);
-            return;
+        let forest = &mut self.group_of_component;
+        if let [only] = &self.strips[..] {
+            forest.extend(0..only.sizes.len() as u32);
+            return self.sizes.extend_from_slice(&only.sizes);
         }
-        self.group_of_run.clear();
+        let mut components = 0;
         for strip in &mut self.strips {
-            let offset = self.group_of_run.len() as u32;
-            strip.first_run = offset;
-            self.group_of_run.extend(strip.parent.iter().map(|parent| parent + offset));
+            strip.first_component = components;
+            components += strip.sizes.len();
         }
+        forest.extend(0..components as u32);
         for k in 1..self.strips.len() {
             let (above, below) = self.strips.split_at_mut(k);
-            self.kernel.stitch(map, rule, &above[k - 1], &mut below[0], &mut self.group_of_run);
+            self.kernel.stitch(map, rule, &above[k - 1], &mut below[0], forest);
         }
+        let sizes = self.strips.iter().flat_map(|strip| strip.sizes.iter().copied());
+        forest::flatten(forest, sizes, &mut self.sizes);
     }
 
     /// Columns of the map.
@@ -213,12 +212,19 @@ impl Groups {
 
     /// How many runs there are.
     pub fn run_count(&self) -> usize {
-        self.group_of_run.len()
+        self.strips.iter().map(|strip| strip.forest.len()).sum()
     }
 
     /// All runs in raster order.
     pub fn runs(&self) -> impl Iterator<Item = Run> + '_ {
-        self.strips.iter().flat_map(|strip| strip.runs(&self.group_of_run))
+        self.strips.iter().flat_map(move |strip| {
+            let groups = &self.group_of_component[strip.first_component..];
+            let columns = (0..strip.rows.len()).flat_map(move |row| strip.columns(row).map(move |run| (row, run)));
+            columns.zip(&strip.forest).map(move |((row, (u_first, u_last)), &component)| {
+                let group = groups[component as usize];
+                Run { v: (strip.rows.start + row) as u32, u_first, u_last, group }
+            })
+        })
     }
 
     /// The pixels of each group, in raster order of the groups' first pixels.
@@ -226,30 +232,29 @@ impl Groups {
         &self.sizes
     }
 
-    /// For each run in raster order its group.
-    pub fn group_of_run(&self) -> &[u32] {
-        &self.group_of_run
-    }
-
-    /// Writes an image, `width * height`, in which every pixel of run i, counted from 1, is `labels[i]`
-    /// and every missing pixel is 0. `labels` has [`SLACK`] entries to spare at its end.
-    pub(crate) fn paint(&self, labels: &[u16], image: &mut [u16]) {
+    /// Writes an image, `width * height`: each pixel the label of its group, each missing pixel 0.
+    /// `label_of_component` is memory to work in.
+    pub(crate) fn paint(&self, label_of_group: &[u16], label_of_component: &mut Vec<u16>, image: &mut [u16]) {
         assert_eq!(image.len(), self.width * self.height);
-        let paint = |strip: &Strip, part: &mut [u16]| {
-            self.kernel.paint(strip, &labels[strip.first_run as usize..], part);
-        };
-        if let [only] = &self.strips[..] {
-            return paint(only, image);
-        }
-        #[cfg(feature = "parallel")]
-        rayon::scope(|scope| {
-            let mut rest = image;
-            for strip in &self.strips {
-                let (part, after) = rest.split_at_mut(strip.rows.len() * self.width);
-                scope.spawn(move |_| paint(strip, part));
-                rest = after;
+        let label_of_component = match &self.strips[..] {
+            [_] => label_of_group, // its components are the groups
+            _ => {
+                label_of_component.clear();
+                label_of_component.extend(self.group_of_component.iter().map(|&group| label_of_group[group as usize]));
+                &label_of_component[..]
             }
-        });
+        };
+        let paint = |(strip, part): (&Strip, &mut [u16])| {
+            self.kernel.paint(strip, &label_of_component[strip.first_component..], part);
+        };
+        let part = self.strips[0].rows.len() * self.width;
+        #[cfg(feature = "parallel")]
+        if self.threads > 1 {
+            let share = self.strips.len().div_ceil(self.threads);
+            let shares = self.strips.par_chunks(share).zip(image.par_chunks_mut(share * part));
+            return shares.for_each(|(strips, share)| strips.iter().zip(share.chunks_mut(part)).for_each(paint));
+        }
+        self.strips.iter().zip(image.chunks_mut(part)).for_each(paint);
     }
 }
 

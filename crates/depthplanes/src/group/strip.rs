@@ -1,11 +1,11 @@
-//! A strip of rows: its bit masks, its runs, and the forest that joins runs to the runs above.
+//! A strip of rows: its bit masks, its runs, and the components that they form within the strip.
 //!
 //! In: rows of the map. Out: for each row the masks of valid pixels and run starts, for each run its
-//! first and last column and its parent. Columns of a row are bits, column u in bit u % 64 of word
+//! component, for each component its size. Columns of a row are bits, column u in bit u % 64 of word
 //! u / 64, so "left" is one bit lower.
 
 use super::kernels::Isa;
-use super::{LinkRule, Run, forest, reserve_to};
+use super::{LinkRule, forest, reserve_to};
 use crate::map::{DepthView, Pixel};
 use std::ops::Range;
 
@@ -20,6 +20,8 @@ pub struct RowMasks<'a> {
 }
 
 /// What a strip knows after [`scan`].
+///
+/// Strips are low enough for their forest to stay in a core's cache until it is flattened.
 #[derive(Debug, Default)]
 pub(super) struct Strip {
     /// Its rows in the map.
@@ -34,20 +36,20 @@ pub(super) struct Strip {
     pub(super) starts: Vec<u64>,
     /// For each row the first of its runs, counted within the strip; one more at the end.
     pub(super) row_first_run: Vec<u32>,
-    /// First column of each run.
-    pub(super) first_column: Vec<u16>,
-    /// Last column of each run.
-    pub(super) last_column: Vec<u16>,
-    /// Forest over the strip's own runs.
-    pub(super) parent: Vec<u32>,
-    /// Runs of the map before this strip's first.
-    pub(super) first_run: u32,
+    /// For each run, while scanning its parent, then its component, both counted within the strip.
+    pub(super) forest: Vec<u32>,
+    /// Pixels of each run.
+    pub(super) lengths: Vec<u16>,
+    /// Pixels of each component.
+    pub(super) sizes: Vec<u32>,
+    /// Components of the map before this strip's first.
+    pub(super) first_component: usize,
     /// Valid pixels of the strip.
     pub(super) valid_pixels: usize,
     scratch: Scratch,
 }
 
-/// Masks that only the next row needs.
+/// What only one row and the next need.
 #[derive(Debug, Default)]
 struct Scratch {
     left: Vec<u64>,
@@ -57,6 +59,8 @@ struct Scratch {
     later_contacts: Vec<u64>,
     runs_before: Vec<u32>,
     runs_before_in_row_above: Vec<u32>,
+    first_column: Vec<u16>,
+    last_column: Vec<u16>,
 }
 
 impl Strip {
@@ -65,10 +69,13 @@ impl Strip {
         let words = width.div_ceil(64);
         let height = rows.len();
         (self.rows, self.width, self.words) = (rows, width, words);
-        (self.first_run, self.valid_pixels) = (0, 0);
         for masks in [&mut self.valid, &mut self.starts] {
             masks.resize(height * words, 0);
         }
+        reserve_to(&mut self.row_first_run, height + 1);
+        reserve_to(&mut self.forest, height * width);
+        reserve_to(&mut self.lengths, height * width);
+        reserve_to(&mut self.sizes, height * width);
         let scratch = &mut self.scratch;
         let Scratch { left, left_of_row_above, above, ends, later_contacts, .. } = scratch;
         for masks in [left, left_of_row_above, above, ends, later_contacts] {
@@ -79,29 +86,38 @@ impl Strip {
             counts.clear();
             counts.resize(words, 0);
         }
-        reserve_to(&mut self.row_first_run, height + 1);
-        reserve_to(&mut self.parent, height * width);
-        for columns in [&mut self.first_column, &mut self.last_column] {
-            reserve_to(columns, height * width + super::kernels::SLACK);
+        for columns in [&mut scratch.first_column, &mut scratch.last_column] {
+            reserve_to(columns, width + super::kernels::SLACK);
         }
     }
 
-    /// The strip's runs, with groups looked up in the map's flattened forest.
-    pub(super) fn runs<'a>(&'a self, root: &'a [u32]) -> impl Iterator<Item = Run> + 'a {
-        self.row_first_run.windows(2).zip(self.rows.clone()).flat_map(move |(bounds, v)| {
-            (bounds[0] as usize..bounds[1] as usize).map(move |run| Run {
-                v: v as u32,
-                u_first: self.first_column[run].into(),
-                u_last: self.last_column[run].into(),
-                group: root[self.first_run as usize + run],
-            })
-        })
+    /// First and last column of each run of a row.
+    pub(super) fn columns(&self, row: usize) -> impl Iterator<Item = (u32, u32)> + '_ {
+        let words = row * self.words..(row + 1) * self.words;
+        let (valid, starts) = (&self.valid[words.clone()], &self.starts[words]);
+        let left = |w: usize| if w < valid.len() { valid[w] & !starts[w] } else { 0 };
+        let ends = move |w: usize| valid[w] & !(left(w) >> 1 | left(w + 1) << 63);
+        bits(starts.len(), |w| starts[w]).zip(bits(starts.len(), ends))
     }
 }
 
-/// Runs and forest of a strip, row by row: masks, runs, contacts with the row above.
+/// Positions of the set bits of some words, in order.
+fn bits(words: usize, word: impl Fn(usize) -> u64) -> impl Iterator<Item = u32> {
+    (0..words).flat_map(move |w| {
+        let mut rest = word(w);
+        std::iter::from_fn(move || {
+            let bit = rest.trailing_zeros();
+            rest &= rest.wrapping_sub(1);
+            (bit < 64).then_some(w as u32 * 64 + bit)
+        })
+    })
+}
+
+/// Components of a strip: row by row its masks, its runs and their contacts with the row above, then
+/// the forest flattened.
 #[inline(always)]
 pub(super) fn scan<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>, strip: &mut Strip) {
+    strip.valid_pixels = 0;
     for row in 0..strip.rows.len() {
         let v = strip.rows.start + row;
         row_masks::<I, T>(map, v, rule, strip);
@@ -113,7 +129,8 @@ pub(super) fn scan<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>,
         std::mem::swap(&mut scratch.left, &mut scratch.left_of_row_above);
         std::mem::swap(&mut scratch.runs_before, &mut scratch.runs_before_in_row_above);
     }
-    strip.row_first_run.push(strip.parent.len() as u32);
+    strip.row_first_run.push(strip.forest.len() as u32);
+    forest::flatten(&mut strip.forest, strip.lengths.iter().map(|&length| length.into()), &mut strip.sizes);
 }
 
 /// Masks of row v of the map, in `valid` and the scratch's `left` and `above`. The links lack the
@@ -149,7 +166,7 @@ fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
     for w in 0..words {
         ends[w] = valid[w] & !(left[w] >> 1 | left[w + 1] << 63);
     }
-    let first = strip.parent.len() as u32;
+    let first = strip.forest.len() as u32;
     let (mut runs, mut pixels) = (first, 0);
     for w in 0..words {
         before[w] = runs;
@@ -158,9 +175,14 @@ fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
     }
     strip.valid_pixels += pixels as usize;
     strip.row_first_run.push(first);
-    strip.parent.extend(first..runs);
-    I::positions(starts, (runs - first) as usize, &mut strip.first_column);
-    I::positions(ends, (runs - first) as usize, &mut strip.last_column);
+    strip.forest.extend(first..runs);
+    let columns = [(&*starts, &mut scratch.first_column), (&*ends, &mut scratch.last_column)];
+    for (mask, columns) in columns {
+        columns.clear();
+        I::positions(mask, (runs - first) as usize, columns);
+    }
+    let columns = scratch.first_column.iter().zip(&scratch.last_column);
+    strip.lengths.extend(columns.map(|(first, last)| last - first + 1));
 }
 
 /// Unites the runs of a row with the runs above that they touch.
@@ -180,7 +202,7 @@ fn join_row_above(strip: &mut Strip, row: usize) {
     let (contacts, later) = (&mut scratch.above[..words], &mut scratch.later_contacts[..words]);
     find_contacts(contacts, [valid, valid_above], [left, left_above]);
     let any_later = split_contacts(contacts, later, left);
-    let parent = &mut strip.parent[..];
+    let parent = &mut strip.forest[..];
     for w in 0..words {
         let mut first = contacts[w];
         while first != 0 {
@@ -240,30 +262,37 @@ fn runs_at(contact: u64, starts: u64, before: u32, starts_above: u64, before_abo
     (before + (starts & up_to).count_ones() - 1, before_above + (starts_above & up_to).count_ones() - 1)
 }
 
-/// Unites the runs on both sides of the border between two strips in the map's forest.
+/// Unites the components on both sides of the border between two strips in the forest of the map's
+/// components.
 #[inline(always)]
 pub(super) fn stitch<I: Isa, T: Pixel>(
     map: &DepthView<'_, T>,
     rule: &LinkRule<T>,
     upper: &Strip,
     lower: &mut Strip,
-    parent: &mut [u32],
+    components: &mut [u32],
 ) {
-    let v = lower.rows.start;
-    row_masks::<I, T>(map, v, rule, lower);
-    let last_row = upper.rows.len() - 1;
-    let starts_above = &upper.starts[last_row * upper.words..];
-    let valid_above = &upper.valid[last_row * upper.words..];
-    let mut before = lower.first_run;
-    let mut before_above = upper.first_run + upper.row_first_run[last_row];
-    for w in 0..lower.words {
-        let mut contact = lower.scratch.above[w] & lower.valid[w] & valid_above[w];
+    row_masks::<I, T>(map, lower.rows.start, rule, lower);
+    let (words, last_row) = (lower.words, upper.rows.len() - 1);
+    let (starts, starts_above) = (&lower.starts[..words], &upper.starts[last_row * words..]);
+    let (valid, valid_above) = (&lower.valid[..words], &upper.valid[last_row * words..]);
+    let Scratch { left, left_of_row_above, above, .. } = &mut lower.scratch;
+    for w in 0..words {
+        left[w] = valid[w] & !starts[w];
+        left_of_row_above[w] = valid_above[w] & !starts_above[w];
+    }
+    find_contacts(&mut above[..words], [valid, valid_above], [left, left_of_row_above]);
+    let (mut before, mut before_above) = (0, upper.row_first_run[last_row]);
+    for w in 0..words {
+        let mut contact = above[w];
         while contact != 0 {
-            let (here, there) = runs_at(contact, lower.starts[w], before, starts_above[w], before_above);
-            forest::unite(parent, here, there);
+            let (here, there) = runs_at(contact, starts[w], before, starts_above[w], before_above);
+            let here = lower.first_component as u32 + lower.forest[here as usize];
+            let there = upper.first_component as u32 + upper.forest[there as usize];
+            forest::unite(components, here, there);
             contact &= contact - 1;
         }
-        before += lower.starts[w].count_ones();
+        before += starts[w].count_ones();
         before_above += starts_above[w].count_ones();
     }
 }

@@ -13,7 +13,7 @@ use crate::enhance::{self, Enhancer};
 use crate::error::{Error, Result};
 use crate::group::{Grouper, LinkRule};
 use crate::map::{AnyView, DepthView, Pixel};
-use crate::select::{Selection, labelled_runs};
+use crate::select::Selection;
 use crate::with_view;
 
 pub(super) static INFO: MethodInfo = MethodInfo {
@@ -192,13 +192,13 @@ impl Runner {
         job.done("group");
         selection.select(groups, params.min)?; // section 3d
         job.done("select");
-        describer.tally(&map, labelled_runs(groups, selection), params.margin, &job.sensor);
+        describer.tally(&map, selection.runs(groups), params.margin, &job.sensor);
         if params.has_conditions() {
             selection.retain(groups, |index| params.accepts(&describer.tallies()[index]));
             describer.retain(|tally| params.accepts(tally));
         }
         let valid = groups.valid_pixels();
-        describer.describe(&map, labelled_runs(groups, selection), &job.sensor, valid, &mut out.planes);
+        describer.describe(&map, selection.runs(groups), &job.sensor, valid, &mut out.planes);
         job.done("fit");
         selection.paint(groups, &mut out.labels);
         (out.width, out.height) = (map.width(), map.height());

@@ -20,7 +20,7 @@ use std::fmt;
 use words::words;
 
 /// Elements that an operation may write or read beyond the end of a buffer's used part.
-pub(crate) const SLACK: usize = 64;
+pub(super) const SLACK: usize = 64;
 
 /// The operations of an instruction set. A type that implements it exists only as a marker, and its
 /// operations are only reached through a [`Kernel`] whose processor features were found.
@@ -35,8 +35,9 @@ pub trait Isa {
     /// Appends the positions of the `count` set bits to `out`, which has [`SLACK`] to spare.
     fn positions(mask: &[u64], count: usize, out: &mut Vec<u16>);
 
-    /// Writes a row of labels: 0 where not valid, else the label of the pixel's run.
-    /// `labels[i]` belongs to the row's run i, counted from 1; there is [`SLACK`] to spare.
+    /// Writes labels of part of a row: 0 where not valid, else the label of the pixel's run.
+    /// `labels[i]` belongs to the i-th run that starts in it, `labels[0]` to one that reaches into it;
+    /// there is [`SLACK`] to spare.
     fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]);
 }
 
@@ -82,8 +83,8 @@ macro_rules! kernel {
                 strip::stitch::<$isa, T>(map, rule, upper, lower, parent);
             }
             #[target_feature(enable = $features)]
-            fn paint(rows: &strip::Strip, labels: &[u16], image: &mut [u16]) {
-                super::paint_strip::<$isa>(rows, labels, image);
+            fn paint(rows: &strip::Strip, label_of_component: &[u16], image: &mut [u16]) {
+                super::paint_strip::<$isa>(rows, label_of_component, image);
             }
             super::Kernel {
                 name: $name,
@@ -140,9 +141,9 @@ impl Kernel {
         unsafe { (T::compiled(self).stitch)(map, rule, upper, lower, parent) }
     }
 
-    pub(super) fn paint(&self, strip: &Strip, labels: &[u16], image: &mut [u16]) {
+    pub(super) fn paint(&self, strip: &Strip, label_of_component: &[u16], image: &mut [u16]) {
         // SAFETY: as in `scan`.
-        unsafe { (self.paint)(strip, labels, image) }
+        unsafe { (self.paint)(strip, label_of_component, image) }
     }
 }
 
@@ -152,12 +153,26 @@ impl fmt::Debug for Kernel {
     }
 }
 
-/// Writes a strip's part of the label image; its run i, counted from 1, has `labels[i]`.
+/// Words of a row that are painted at a time, so that their runs' labels fit on the stack.
+const BLOCK: usize = 16;
+
+/// Writes a strip's part of the label image, given the labels of its components.
 #[inline(always)]
-fn paint_strip<I: Isa>(strip: &Strip, labels: &[u16], image: &mut [u16]) {
+fn paint_strip<I: Isa>(strip: &Strip, label_of_component: &[u16], image: &mut [u16]) {
+    let mut components = &strip.forest[..];
+    let mut labels = [0; 1 + BLOCK * 64 + SLACK];
     for (row, pixels) in image.chunks_exact_mut(strip.width).enumerate() {
         let words = row * strip.words..(row + 1) * strip.words;
-        let labels = &labels[strip.row_first_run[row] as usize..];
-        I::paint_row(&strip.valid[words.clone()], &strip.starts[words], labels, pixels);
+        let (valid, starts) = (strip.valid[words.clone()].chunks(BLOCK), strip.starts[words].chunks(BLOCK));
+        for ((valid, starts), pixels) in valid.zip(starts).zip(pixels.chunks_mut(BLOCK * 64)) {
+            let runs: usize = starts.iter().map(|word| word.count_ones() as usize).sum();
+            let (here, after) = components.split_at(runs);
+            components = after;
+            for (label, &component) in labels[1..].iter_mut().zip(here) {
+                *label = label_of_component[component as usize];
+            }
+            I::paint_row(valid, starts, &labels, pixels);
+            labels[0] = labels[runs]; // the run that may reach into the next block
+        }
     }
 }
