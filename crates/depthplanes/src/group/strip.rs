@@ -157,15 +157,8 @@ fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
     let left = &mut scratch.left[..words + 1];
     let ends = &mut scratch.ends[..words];
     let before = &mut scratch.runs_before[..words];
-    let mut valid_left = 0;
-    for w in 0..words {
-        left[w] &= valid[w] & (valid[w] << 1 | valid_left);
-        starts[w] = valid[w] & !left[w];
-        valid_left = valid[w] >> 63;
-    }
-    for w in 0..words {
-        ends[w] = valid[w] & !(left[w] >> 1 | left[w + 1] << 63);
-    }
+    link_left(valid, left, starts);
+    end_runs(valid, left, ends);
     let first = strip.forest.len() as u32;
     let (mut runs, mut pixels) = (first, 0);
     for w in 0..words {
@@ -185,6 +178,25 @@ fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
     strip.lengths.extend(columns.map(|(first, last)| last - first + 1));
 }
 
+/// Links pixels to their left neighbours where both are valid; pixels without that link start runs.
+#[inline(always)]
+fn link_left(valid: &[u64], left: &mut [u64], starts: &mut [u64]) {
+    let mut valid_left = 0;
+    for w in 0..valid.len() {
+        left[w] &= valid[w] & (valid[w] << 1 | valid_left);
+        starts[w] = valid[w] & !left[w];
+        valid_left = valid[w] >> 63;
+    }
+}
+
+/// A run ends at a valid pixel whose right neighbour is not linked to it. `left` has one word more.
+#[inline(always)]
+fn end_runs(valid: &[u64], left: &[u64], ends: &mut [u64]) {
+    for w in 0..valid.len() {
+        ends[w] = valid[w] & !(left[w] >> 1 | left[w + 1] << 63);
+    }
+}
+
 /// Unites the runs of a row with the runs above that they touch.
 ///
 /// Only the first pixel of each touching pair of runs matters. A run's first such contact makes it
@@ -200,7 +212,7 @@ fn join_row_above(strip: &mut Strip, row: usize) {
     let (left, left_above) = (&scratch.left[..words], &scratch.left_of_row_above[..words]);
     let (before, before_above) = (&scratch.runs_before[..words], &scratch.runs_before_in_row_above[..words]);
     let (contacts, later) = (&mut scratch.above[..words], &mut scratch.later_contacts[..words]);
-    find_contacts(contacts, [valid, valid_above], [left, left_above]);
+    find_contacts(contacts, valid, valid_above, left, left_above);
     let any_later = split_contacts(contacts, later, left);
     let parent = &mut strip.forest[..];
     for w in 0..words {
@@ -224,11 +236,11 @@ fn join_row_above(strip: &mut Strip, row: usize) {
 /// Of the pixels that are close to the one above, in place those where two runs first touch: both
 /// valid, and without a left neighbour in the same two runs that is linked upwards too.
 #[inline(always)]
-fn find_contacts(close_up: &mut [u64], valid: [&[u64]; 2], left: [&[u64]; 2]) {
+fn find_contacts(close_up: &mut [u64], valid: &[u64], valid_above: &[u64], left: &[u64], left_above: &[u64]) {
     let mut up_left = 0;
     for w in 0..close_up.len() {
-        let up = close_up[w] & valid[0][w] & valid[1][w];
-        close_up[w] = up & !((up << 1 | up_left) & left[0][w] & left[1][w]);
+        let up = close_up[w] & valid[w] & valid_above[w];
+        close_up[w] = up & !((up << 1 | up_left) & left[w] & left_above[w]);
         up_left = up >> 63;
     }
 }
@@ -281,7 +293,7 @@ pub(super) fn stitch<I: Isa, T: Pixel>(
         left[w] = valid[w] & !starts[w];
         left_of_row_above[w] = valid_above[w] & !starts_above[w];
     }
-    find_contacts(&mut above[..words], [valid, valid_above], [left, left_of_row_above]);
+    find_contacts(&mut above[..words], valid, valid_above, left, left_of_row_above);
     let (mut before, mut before_above) = (0, upper.row_first_run[last_row]);
     for w in 0..words {
         let mut contact = above[w];
