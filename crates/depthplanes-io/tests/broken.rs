@@ -168,7 +168,7 @@ fn lying_pictures() -> Vec<Case> {
     edit("bmp of 2^31 rows", 22, &[0, 0, 0, 0x80]);
     edit("bmp of 60000 x 2000", 18, &[0x60, 0xea, 0, 0, 0xd0, 7, 0, 0]);
     edit("bmp with pixels elsewhere", 10, &[0xff; 4]);
-    edit("bmp with a short palette", 46, &[3]);
+    edit("bmp with a short palette", 46, &[3, 0]);
     edit("bmp with a long header", 14, &[124]);
     cases.extend(rvl_and_lzf());
     cases

@@ -1,6 +1,6 @@
 //! Small valid files of every format, written by code that shares nothing with the readers, and
 //! the way to the real data.
-#![allow(dead_code)] // Each test binary uses its part.
+#![allow(dead_code, unreachable_pub)] // Each test binary uses its part.
 
 use std::io::Write;
 use std::path::PathBuf;
