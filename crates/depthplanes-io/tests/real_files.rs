@@ -28,7 +28,7 @@ fn every_map_of_the_manifest_has_the_stated_size() {
         let extension = Path::new(path).extension().and_then(|e| e.to_str()).unwrap_or("");
         let headerless = extension == "raw";
         let known = FORMATS.iter().any(|format| format.extensions.contains(&extension));
-        if !known || headerless || width == "-" {
+        if !known || headerless || width == "-" || path.contains("_GT") {
             continue;
         }
         let result = read(data.join(path), &ReadOptions::default());
