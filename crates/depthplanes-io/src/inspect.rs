@@ -110,7 +110,8 @@ fn histogram(sorted: &[f64], bins: usize) -> Vec<Bin> {
         return Vec::new();
     };
     let edge = |bin: usize| low + (high - low) * (bin as f64 / bins as f64);
-    let below = |bin: usize| if bin == bins { sorted.len() } else { sorted.partition_point(|&value| value < edge(bin)) };
+    let below =
+        |bin: usize| if bin == bins { sorted.len() } else { sorted.partition_point(|&value| value < edge(bin)) };
     (0..bins).map(|bin| Bin { low: edge(bin), high: edge(bin + 1), count: below(bin + 1) - below(bin) }).collect()
 }
 
@@ -177,7 +178,10 @@ fn traps(frame: &Frame, probe: &Probe) -> Vec<String> {
     let all_ones = probe.all_ones as f64 / probe.pixels.max(1) as f64;
     let ones_missing = frame.missing == Some(65_535.0) || frame.valid_range.is_some_and(|(_, high)| high < 65_535.0);
     if all_ones > 0.005 && !ones_missing {
-        found.push(format!("{} of the pixels are 65535, often the value for missing: try --missing 65535", percent(all_ones)));
+        found.push(format!(
+            "{} of the pixels are 65535, often the value for missing: try --missing 65535",
+            percent(all_ones)
+        ));
     }
     if probe.missing() > 0.5 {
         let share = percent(probe.missing());
@@ -202,22 +206,26 @@ fn integer_traps(frame: &Frame, probe: &Probe, found: &mut Vec<String>) {
         found.push("neighbours differ far less with their bytes swapped: try --swap-bytes".to_string());
         return;
     }
-    let values = || probe.valid.iter().map(|value| *value as u32).filter(|value| *value != 65_535);
-    let divisor = values().fold(0, common_divisor);
-    let largest = values().max().unwrap_or(0);
+    let values: Vec<u32> = probe.valid.iter().map(|value| *value as u32).filter(|value| *value != 65_535).collect();
+    let largest = values.iter().max().copied().unwrap_or(0);
     if largest < 256 {
         found.push(format!("16 bits but no value above {largest}: grey levels or labels? try --encoding grey"));
-    } else if frame.encoding != "millimetre" || largest == divisor {
-        // The other encodings were stated by someone who knows.
-    } else if divisor % 8 == 0 {
-        found.push("all values are multiples of 8, as packed by Kinect SDK 1 and SUN RGB-D: try --encoding kinect-sdk or sun-rgbd".to_string());
-    } else if divisor % 5 == 0 {
-        found.push("all values are multiples of 5, as in TUM RGB-D (5000 a metre): try --encoding tum".to_string());
+        return;
     }
-}
-
-fn common_divisor(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { common_divisor(b, a % b) }
+    let mut levels = values.clone();
+    levels.sort_unstable();
+    levels.dedup();
+    if frame.encoding != "millimetre" || levels.len() < 8 {
+        return; // The other encodings were stated by someone who knows.
+    }
+    // Not quite all: player bits and distances above 8 m leave other remainders.
+    let multiples = |of: u32| values.iter().filter(|value| value.is_multiple_of(of)).count() * 100 >= values.len() * 95;
+    if multiples(8) {
+        let packed = "the values are multiples of 8, as Kinect SDK 1 and SUN RGB-D pack them";
+        found.push(format!("{packed}: try --encoding kinect-sdk or sun-rgbd"));
+    } else if multiples(5) {
+        found.push("the values are multiples of 5, as in TUM RGB-D (5000 a metre): try --encoding tum".to_string());
+    }
 }
 
 /// Metres for millimetres and the other way round.
@@ -232,6 +240,9 @@ fn unit_traps(frame: &Frame, probe: &Probe, found: &mut Vec<String>) {
     if median_m > 100.0 {
         found.push(format!("the median depth would be {median_m:.0} m: try --encoding millimetre or tum"));
     } else if median_m < 0.05 {
-        found.push(format!("the median depth would be {:.1} mm: try --encoding metre, or --disparity", 1000.0 * median_m));
+        found.push(format!(
+            "the median depth would be {:.1} mm: try --encoding metre, or --disparity",
+            1000.0 * median_m
+        ));
     }
 }

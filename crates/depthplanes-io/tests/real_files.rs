@@ -55,6 +55,24 @@ fn raw_kinect_with_swapped_bytes_becomes_a_room() {
 }
 
 #[test]
+fn foreign_units_are_suspected_and_millimetres_are_not() {
+    let Some(data) = common::data() else { return };
+    for (path, hint) in [
+        ("open3d/SUN_depth.png", "sun-rgbd"),
+        ("open3d/TUM_depth.png", "tum"),
+        ("icl_nuim/evolin/depth/0000.png", "tum"),
+        ("kinect_v1/cape_depth_0.png", ""),
+        ("stairs_kinect_v2/0000_depth.png", ""),
+        ("realsense_polylidar/depth/00000000_1580908150203.png", ""),
+        ("video_tsdf_fusion/frame-000150.depth.png", ""),
+    ] {
+        let warnings = read(data.join(path), &ReadOptions::default()).unwrap().warnings;
+        assert_eq!(warnings.is_empty(), hint.is_empty(), "{path}: {warnings:?}");
+        assert!(hint.is_empty() || warnings[0].contains(hint), "{path}: {warnings:?}");
+    }
+}
+
+#[test]
 fn data_sets_with_their_own_units_become_rooms() {
     let Some(data) = common::data() else { return };
     for (path, encoding) in [
