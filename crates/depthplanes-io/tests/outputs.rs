@@ -209,8 +209,9 @@ fn an_output_may_not_be_an_input_or_another_output_however_it_is_spelled() {
     assert!(error.to_string().contains("--labels would overwrite the input"), "{error}");
     let (a, b) = (folder.join("out.png"), folder.join("../same_path/out.png"));
     assert!(outputs::check_paths(&inputs, &[named(&a, "--labels"), named(&b, "--overlay")]).is_err());
-    assert!(outputs::check_paths(&inputs, &[named(&folder, "--labels")]).is_err());
-    assert!(outputs::check_paths(&inputs, &[named(&folder.join("no/a.png"), "--labels")]).is_err());
+    assert!(matches!(outputs::check_folder(&folder), Err(OutputError::IsFolder(_))));
+    assert!(matches!(outputs::check_folder(&folder.join("no/a.png")), Err(OutputError::NoFolder { .. })));
+    outputs::check_folder(&a).unwrap();
     outputs::check_paths(&inputs, &[named(&a, "--labels")]).unwrap();
 }
 

@@ -32,22 +32,30 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     Staged::new(path, bytes)?.commit()
 }
 
-/// Refuses outputs that cannot be written or that would overwrite an input or each other.
-/// `inputs` and `outputs` are pairs of a path and what to call it.
+/// Refuses a path that is a folder or whose folder does not exist.
 ///
 /// # Errors
-/// [`OutputError::SamePath`], [`OutputError::IsFolder`], [`OutputError::NoFolder`].
+/// [`OutputError::IsFolder`], [`OutputError::NoFolder`].
+pub fn check_folder(path: &Path) -> Result<(), OutputError> {
+    if path.is_dir() {
+        return Err(OutputError::IsFolder(path.to_path_buf()));
+    }
+    let folder = folder_of(path);
+    if !folder.is_dir() {
+        return Err(OutputError::NoFolder { path: path.to_path_buf(), folder: folder.to_path_buf() });
+    }
+    Ok(())
+}
+
+/// Refuses outputs that would overwrite an input or each other. `inputs` and `outputs` are pairs of
+/// a path and what to call it.
+///
+/// # Errors
+/// [`OutputError::SamePath`].
 pub fn check_paths(inputs: &[(PathBuf, String)], outputs: &[(PathBuf, String)]) -> Result<(), OutputError> {
     let mut taken: HashMap<PathBuf, &str> = HashMap::new();
     taken.extend(inputs.iter().map(|(path, name)| (identity(path), name.as_str())));
     for (path, name) in outputs {
-        if path.is_dir() {
-            return Err(OutputError::IsFolder(path.clone()));
-        }
-        let folder = folder_of(path);
-        if !folder.is_dir() {
-            return Err(OutputError::NoFolder { path: path.clone(), folder: folder.to_path_buf() });
-        }
         if is_device(path) {
             continue;
         }

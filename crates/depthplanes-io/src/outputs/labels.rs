@@ -2,7 +2,7 @@
 //!
 //! PNG opens anywhere and is small; NPY is what NumPy and the EVOPS tools take.
 
-use super::picture::encode_png;
+use super::picture::grey16_png;
 use super::{Output, Writer};
 use depthplanes::Detection;
 
@@ -19,8 +19,7 @@ pub(super) const OUTPUT: Output = Output {
 
 /// The label image as a 16-bit grey PNG file.
 pub fn png(detection: &Detection) -> Vec<u8> {
-    let samples: Vec<u8> = detection.labels.iter().flat_map(|label| label.to_be_bytes()).collect();
-    encode_png(detection.width, detection.height, png::ColorType::Grayscale, png::BitDepth::Sixteen, &samples)
+    grey16_png(detection.width, detection.height, &detection.labels)
 }
 
 /// The label image as a NumPy file, `uint16`, shape `(height, width)`.

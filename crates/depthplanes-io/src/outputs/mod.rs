@@ -25,8 +25,9 @@ use crate::Frame;
 
 pub use colour::colour;
 pub use error::OutputError;
-pub use files::{check_paths, write_all, write_file};
+pub use files::{check_folder, check_paths, write_all, write_file};
 pub use labels::{npy as labels_npy, png as labels_png};
+pub use picture::grey16_png;
 pub use planes::{CSV_COLUMNS, document as json_document, line as json_line};
 pub use record::SCHEMA;
 

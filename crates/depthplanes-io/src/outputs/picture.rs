@@ -44,14 +44,14 @@ impl Picture {
     }
 }
 
+/// A 16-bit grey PNG file, the usual home of labels and of depth in millimetres.
+pub fn grey16_png(width: usize, height: usize, values: &[u16]) -> Vec<u8> {
+    let samples: Vec<u8> = values.iter().flat_map(|value| value.to_be_bytes()).collect();
+    encode_png(width, height, png::ColorType::Grayscale, png::BitDepth::Sixteen, &samples)
+}
+
 /// A PNG file of samples in PNG's own order (16-bit samples high byte first).
-pub(super) fn encode_png(
-    width: usize,
-    height: usize,
-    colour: png::ColorType,
-    depth: png::BitDepth,
-    samples: &[u8],
-) -> Vec<u8> {
+fn encode_png(width: usize, height: usize, colour: png::ColorType, depth: png::BitDepth, samples: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
     encoder.set_color(colour);

@@ -1,0 +1,28 @@
+//! The commands, one file each.
+
+mod completions;
+mod demo;
+mod detect;
+mod inspect;
+mod lists;
+mod man;
+
+use crate::args::Command;
+use crate::failure::Outcome;
+use std::io::Write;
+
+/// Runs a command; `out` is standard output.
+pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
+    match command {
+        Command::Detect(wanted) => detect::run(wanted, out),
+        Command::Inspect { inputs, reading, json } => inspect::run(inputs, reading, *json, out),
+        Command::Demo { out_dir } => demo::run(out_dir, out),
+        Command::Methods => lists::methods(out),
+        Command::Params { method } => lists::params(*method, out),
+        Command::Formats => lists::formats(out),
+        Command::Encodings => lists::encodings(out),
+        Command::Presets => lists::presets(out),
+        Command::Completions { shell } => completions::run(*shell, out),
+        Command::Man { out_dir } => man::run(out_dir.as_deref(), out),
+    }
+}
