@@ -6,11 +6,16 @@
 //! [`Detector`] runs a whole method over frame after frame; the stages stand alone as well.
 
 pub mod camera;
+pub mod describe;
 pub mod detection;
 mod detector;
+pub mod enhance;
 pub mod error;
+pub mod fit;
+pub mod group;
 pub mod map;
 pub mod methods;
+pub mod select;
 
 pub use camera::{Hessian, Intrinsics, Measure, Sensor};
 pub use detection::{Detection, Plane};

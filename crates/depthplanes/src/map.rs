@@ -12,10 +12,50 @@ pub const MAX_SIDE: usize = 65_535;
 pub const MAX_PIXELS: usize = 1 << 30;
 
 mod sealed {
-    pub trait Sealed {}
-    impl Sealed for u8 {}
-    impl Sealed for u16 {}
-    impl Sealed for f32 {}
+    use crate::enhance::{Buffers, Columns, Enhancer};
+    use crate::group::{Compiled, Isa, Kernel, LinkRule, RowMasks};
+
+    /// What the stages need of a pixel type, and nobody else.
+    pub trait Sealed: Sized {
+        /// |a - b|.
+        fn distance(self, other: Self) -> Self;
+        /// The largest value of this type that is not above theta; for `f32`, the nearest.
+        fn floor_from(theta: f64) -> Self;
+        /// The kernel's functions for this type.
+        fn compiled(kernel: &Kernel) -> Compiled<Self>;
+        /// The enhancer's memory for this type.
+        fn buffers(enhancer: &mut Enhancer) -> (&mut Buffers<Self>, &mut Columns);
+        /// The instruction set's masks for this type.
+        fn masks<I: Isa>(row: &[Self], up: Option<&[Self]>, rule: &LinkRule<Self>, out: RowMasks<'_>);
+    }
+
+    macro_rules! sealed {
+        ($t:ident, $masks:ident, $distance:expr, $floor_from:expr) => {
+            impl Sealed for $t {
+                #[inline(always)]
+                fn distance(self, other: Self) -> Self {
+                    $distance(self, other)
+                }
+                fn floor_from(theta: f64) -> Self {
+                    $floor_from(theta)
+                }
+                fn compiled(kernel: &Kernel) -> Compiled<Self> {
+                    kernel.$t
+                }
+                fn buffers(enhancer: &mut Enhancer) -> (&mut Buffers<Self>, &mut Columns) {
+                    (&mut enhancer.$t, &mut enhancer.columns)
+                }
+                #[inline(always)]
+                fn masks<I: Isa>(row: &[Self], up: Option<&[Self]>, rule: &LinkRule<Self>, out: RowMasks<'_>) {
+                    I::$masks(row, up, rule, out)
+                }
+            }
+        };
+    }
+    // `as` from a float clamps to the type's range and drops the fraction.
+    sealed!(u8, masks_u8, u8::abs_diff, |theta: f64| theta as u8);
+    sealed!(u16, masks_u16, u16::abs_diff, |theta: f64| theta as u16);
+    sealed!(f32, masks_f32, |a: f32, b: f32| (a - b).abs(), |theta: f64| theta as f32);
 }
 
 /// A pixel type: `u8`, `u16` or `f32`.
@@ -28,6 +68,8 @@ pub trait Pixel:
     const LOWEST: Self;
     /// Highest value that can be valid; for `f32` it excludes the infinities.
     const HIGHEST: Self;
+    /// Whether values are whole numbers.
+    const IS_INTEGER: bool;
 
     /// Nearest value of this type, clamped to its range.
     fn from_f64(value: f64) -> Self;
@@ -42,6 +84,7 @@ macro_rules! integer_pixel {
             const ZERO: Self = 0;
             const LOWEST: Self = 0;
             const HIGHEST: Self = <$t>::MAX;
+            const IS_INTEGER: bool = true;
             fn from_f64(value: f64) -> Self {
                 value.round() as $t
             }
@@ -58,6 +101,7 @@ impl Pixel for f32 {
     const ZERO: Self = 0.0;
     const LOWEST: Self = f32::MIN;
     const HIGHEST: Self = f32::MAX;
+    const IS_INTEGER: bool = false;
     fn from_f64(value: f64) -> Self {
         value as f32
     }

@@ -12,7 +12,7 @@ use crate::map::AnyView;
 pub use ngaf::Ngaf;
 
 /// All methods. The first is the default.
-pub const METHODS: &[MethodInfo] = &[ngaf::INFO];
+pub static METHODS: &[&MethodInfo] = &[&ngaf::INFO];
 
 /// One row of [`METHODS`].
 #[derive(Debug)]
@@ -118,7 +118,7 @@ impl Job<'_> {
 /// # Errors
 /// [`Error::Unknown`] with the names there are.
 pub fn find(name: &str) -> Result<&'static MethodInfo> {
-    METHODS.iter().find(|method| method.name == name).ok_or_else(|| Error::Unknown {
+    METHODS.iter().copied().find(|method| method.name == name).ok_or_else(|| Error::Unknown {
         what: "method",
         given: name.to_string(),
         accepted: names(METHODS.iter().map(|method| method.name)),

@@ -1,14 +1,25 @@
-//! NGaF: neighbour grouping after filtering, as published (Hoa, Minh, Dung 2017), section 3.
+//! NGaF, the paper's method (Hoa, Minh, Dung 2017, "Effective Method For Detecting Multi Planes From
+//! Depth Maps"): enhance, group neighbours, keep large groups.
+//!
+//! In: any map; a camera only for metric planes. Out: surfaces of continuous depth. It is exact and
+//! fast, and it sees continuity only: a wall that meets its floor is one group, a slanted plane
+//! whose steps exceed theta falls into bands, a ball counts as a plane. Where that matters, use a
+//! method that fits planes.
 
 use super::{Job, Method, MethodInfo, Param, ParamKind};
+use crate::describe::{Describer, Tally};
 use crate::detection::Detection;
+use crate::enhance::{self, Enhancer};
 use crate::error::{Error, Result};
-use crate::map::AnyView;
+use crate::group::{Grouper, LinkRule};
+use crate::map::{AnyView, DepthView, Pixel};
+use crate::select::{Selection, labelled_runs};
+use crate::with_view;
 
-pub(super) const INFO: MethodInfo = MethodInfo {
+pub(super) static INFO: MethodInfo = MethodInfo {
     name: "ngaf",
-    about: "Groups neighbours whose values differ by at most theta; a group above `min` pixels is a plane (Hoa, Minh, Dung 2017).",
-    stages: &["enhance", "group", "select", "fit"],
+    about: "Groups neighbours whose values differ by at most theta; a group of more than `min` pixels is a plane (Hoa, Minh, Dung 2017).",
+    stages: &["enhance", "group", "select", "fit", "label"],
     params: PARAMS,
     build: |values| Ngaf::from_values(values).try_into(),
 };
@@ -21,49 +32,114 @@ const PARAMS: &[Param] = &[
         max: f64::MAX,
         kind: ParamKind::Real,
         unit: "map units",
+        meaning: "Largest difference between neighbours of one group; the paper takes 1 for near-perfect maps, 2 for sensors.",
         source: Some("3c"),
-        meaning: "Largest difference between neighbours of one group; the paper uses 1 for near-perfect maps, 2 for sensors.",
     },
     Param {
         name: "min",
         default: 32.0,
         min: 0.0,
-        max: 4294967295.0,
+        max: u32::MAX as f64,
         kind: ParamKind::Whole,
         unit: "pixels",
+        meaning: "A group is a plane if it has more pixels than this; the paper takes 32, 64, 128, 256.",
         source: Some("3d"),
-        meaning: "A group is a plane if it has more pixels than this.",
     },
     Param {
         name: "window",
         default: 0.0,
-        min: 3.0,
-        max: 31.0,
+        min: *enhance::WINDOW.start() as f64,
+        max: *enhance::WINDOW.end() as f64,
         kind: ParamKind::OddOrOff,
         unit: "pixels",
+        meaning: "Side of the window whose mean fills a missing pixel, unless more than half of it is missing.",
         source: Some("3b"),
-        meaning: "Side of the window from whose mean missing pixels are filled; 0 leaves the map as it is.",
+    },
+    Param {
+        name: "passes",
+        default: 1.0,
+        min: 1.0,
+        max: 100.0,
+        kind: ParamKind::Whole,
+        unit: "times",
+        meaning: "How often the map is enhanced, each pass reading what the one before left; without `window` it does nothing.",
+        source: None,
+    },
+    Param {
+        name: "max-rms",
+        default: 0.0,
+        min: 0.0,
+        max: f64::MAX,
+        kind: ParamKind::Real,
+        unit: "map units",
+        meaning: "Drops planes whose least-squares fit leaves a larger root mean square residual, or that have no fit; 0 for off.",
+        source: None,
+    },
+    Param {
+        name: "min-fill",
+        default: 0.0,
+        min: 0.0,
+        max: 1.0,
+        kind: ParamKind::Real,
+        unit: "share",
+        meaning: "Drops planes that cover a smaller share of their bounding box; 0 for off.",
+        source: None,
+    },
+    Param {
+        name: "margin",
+        default: 0.0,
+        min: 0.0,
+        max: crate::map::MAX_SIDE as f64,
+        kind: ParamKind::Whole,
+        unit: "pixels",
+        meaning: "Pixels closer than this to the map's edge do not count towards `min`.",
+        source: None,
     },
 ];
 
-/// Parameters of the paper's method.
+/// Parameters of [`ngaf`](self); the defaults are the paper's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ngaf {
-    /// Largest difference between neighbours of one group, map units (section 3c).
+    /// Largest difference between neighbours of one group, map units, 0 and up (section 3c).
     pub theta: f64,
-    /// A group is a plane if it has more pixels than this (section 3d).
+    /// A group is a plane if it has strictly more pixels than this (section 3d).
     pub min: u32,
     /// Side of the enhancing window, odd 3..=31, or 0 for no enhancing (section 3b).
     pub window: u32,
+    /// How often to enhance, 1..=100. Ours.
+    pub passes: u32,
+    /// Largest rms residual of a plane's fit, map units; 0 for off. Ours.
+    pub max_rms: f64,
+    /// Least share of the bounding box that a plane covers, 0..=1; 0 for off. Ours.
+    pub min_fill: f64,
+    /// Pixels closer than this to the map's edge do not count towards `min`; 0 for off. Ours.
+    pub margin: u32,
 }
 
 impl Ngaf {
     fn from_values(values: &[f64]) -> Self {
-        Ngaf { theta: values[0], min: values[1] as u32, window: values[2] as u32 }
+        let &[theta, min, window, passes, max_rms, min_fill, margin] = values else {
+            panic!("one value for each row of PARAMS");
+        };
+        let (min, window, passes, margin) = (min as u32, window as u32, passes as u32, margin as u32);
+        Ngaf { theta, min, window, passes, max_rms, min_fill, margin }
     }
 
-    fn values(&self) -> [f64; 3] {
-        [self.theta, self.min as f64, self.window as f64]
+    fn values(&self) -> [f64; 7] {
+        let &Ngaf { theta, min, window, passes, max_rms, min_fill, margin } = self;
+        [theta, min.into(), window.into(), passes.into(), max_rms, min_fill, margin.into()]
+    }
+
+    /// Whether a plane may be dropped after it was fitted.
+    fn has_conditions(&self) -> bool {
+        self.max_rms > 0.0 || self.min_fill > 0.0 || self.margin > 0
+    }
+
+    /// Our own conditions on a plane of a map of that size.
+    fn accepts(&self, plane: &Tally) -> bool {
+        let flat = self.max_rms == 0.0 || plane.fit.is_some_and(|fit| fit.rms <= self.max_rms);
+        let filled = plane.pixel_count as f64 >= self.min_fill * plane.bounding_box.area() as f64;
+        flat && filled && plane.inner_pixels > self.min as usize
     }
 }
 
@@ -75,22 +151,59 @@ impl Default for Ngaf {
 
 impl TryFrom<Ngaf> for Box<dyn Method> {
     type Error = Error;
+
     fn try_from(params: Ngaf) -> Result<Self> {
         INFO.check(&params.values())?;
-        Ok(Box::new(Runner { _params: params }))
+        Ok(Box::new(Runner { params, ..Runner::default() }))
     }
 }
 
+/// The method with its memory.
+#[derive(Default)]
 struct Runner {
-    _params: Ngaf,
+    params: Ngaf,
+    enhancer: Enhancer,
+    grouper: Grouper,
+    selection: Selection,
+    describer: Describer,
 }
 
 impl Method for Runner {
     fn info(&self) -> &'static MethodInfo {
-        &METHOD
+        &INFO
     }
-    fn run(&mut self, _map: AnyView<'_>, _job: &mut Job<'_>, _out: &mut Detection) -> Result<()> {
+
+    fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
+        with_view!(map, map => self.ngaf(map, job, out))
+    }
+}
+
+impl Runner {
+    /// Section 3, stage by stage.
+    fn ngaf<T: Pixel>(&mut self, map: DepthView<'_, T>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
+        let Runner { params, enhancer, grouper, selection, describer } = self;
+        let (map, filled_pixels) = match params.window {
+            0 => (map, 0),
+            window => enhancer.enhance(&map, window, params.passes)?, // section 3b
+        };
+        job.done("enhance");
+        let rule = LinkRule::new(map.validity(), params.theta)?;
+        let groups = grouper.group(&map, &rule, job.threads); // section 3c
+        job.done("group");
+        selection.select(groups, params.min)?; // section 3d
+        job.done("select");
+        describer.tally(&map, labelled_runs(groups, selection), params.margin, &job.sensor);
+        if params.has_conditions() {
+            selection.retain(groups, |index| params.accepts(&describer.tallies()[index]));
+            describer.retain(|tally| params.accepts(tally));
+        }
+        let valid = groups.valid_pixels();
+        describer.describe(&map, labelled_runs(groups, selection), &job.sensor, valid, &mut out.planes);
+        job.done("fit");
+        selection.paint(groups, &mut out.labels);
+        (out.width, out.height) = (map.width(), map.height());
+        (out.valid_pixels, out.filled_pixels) = (valid - filled_pixels, filled_pixels);
+        job.done("label");
         Ok(())
     }
 }
-static METHOD: MethodInfo = INFO;

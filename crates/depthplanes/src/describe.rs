@@ -1,0 +1,265 @@
+//! From labelled pixels to plane records: counts, boxes, least-squares planes, metric planes.
+//!
+//! In: the map and its labelled runs in raster order. Out: one [`Plane`] for each label. Two passes
+//! over the labelled pixels only: the first sums, the second, where a camera is known, measures
+//! distances from the fitted planes. Sums are taken in raster order, whatever the number of threads.
+
+use crate::camera::{Intrinsics, Measure, Sensor};
+use crate::detection::{MapFit, MetricPlane, PixelBox, Plane, share};
+use crate::fit::{self, AffineFit, Moments, RunSums};
+use crate::group::Run;
+use crate::map::{DepthView, Pixel};
+
+/// What the first pass knows of a plane.
+#[derive(Clone, Copy, Debug)]
+pub struct Tally {
+    /// Its pixels.
+    pub pixel_count: usize,
+    /// Its pixels that are at least the margin away from the map's edge.
+    pub inner_pixels: usize,
+    /// Smallest box around its pixels.
+    pub bounding_box: PixelBox,
+    /// Mean (u, v) of its pixels.
+    pub centroid: [f64; 2],
+    /// Least-squares plane in the map's own units.
+    pub fit: Option<AffineFit>,
+    /// Least-squares plane in inverse depth, 1/m, where that is known.
+    inverse_depth: Option<AffineFit>,
+    origin: [f64; 2],
+    value: Quantity,
+    inverse: Quantity,
+}
+
+/// Sums of one quantity about its value at the plane's first pixel.
+#[derive(Clone, Copy, Debug, Default)]
+struct Quantity {
+    first: f64,
+    sums: Moments,
+}
+
+/// Describes planes; reuses its memory from map to map.
+#[derive(Debug, Default)]
+pub struct Describer {
+    tallies: Vec<Tally>,
+    distances: Vec<Distances>,
+}
+
+/// What the second pass sums for a plane.
+#[derive(Clone, Copy, Debug, Default)]
+struct Distances {
+    /// Sum of (z (q - q of the plane))^2.
+    squares: f64,
+    /// Sum of the points, metres.
+    point: [f64; 3],
+    /// Whether all pixels lie before infinity.
+    behind_infinity: bool,
+}
+
+impl Describer {
+    /// First pass. Labels are 1, 2, .. in `runs`, and none is left out.
+    pub fn tally<T: Pixel>(
+        &mut self,
+        map: &DepthView<'_, T>,
+        runs: impl Iterator<Item = (Run, u16)>,
+        margin: u32,
+        sensor: &Sensor,
+    ) {
+        self.tallies.clear();
+        self.tallies.reserve(crate::select::MAX_PLANES.min(map.area()));
+        let inner = Margin { margin, width: map.width() as u32, height: map.height() as u32 };
+        // Planes of depth maps are affine in inverse depth; all others in the map's own values.
+        let inverse = match (sensor.intrinsics, sensor.measure) {
+            (Some(_), Measure::Depth { metres }) => Some(move |value: T| 1.0 / (metres * value.into())),
+            _ => None,
+        };
+        for (run, label) in runs {
+            let values = &map.row(run.v as usize)[run.u_first as usize..=run.u_last as usize];
+            let at = usize::from(label) - 1;
+            if at >= self.tallies.len() {
+                self.tallies.resize_with(at + 1, Tally::none);
+            }
+            let tally = &mut self.tallies[at];
+            if tally.pixel_count == 0 {
+                tally.begin(&run, values[0].into(), inverse.map_or(0.0, |inverse| inverse(values[0])));
+            }
+            tally.pixel_count += values.len();
+            tally.inner_pixels += inner.pixels(&run);
+            tally.bounding_box.include(&run);
+            let (u, v) = (f64::from(run.u_first) - tally.origin[0], f64::from(run.v) - tally.origin[1]);
+            tally.value.add(u, v, values, |value| value.into());
+            if let Some(inverse) = inverse {
+                tally.inverse.add(u, v, values, inverse);
+            }
+        }
+        self.tallies.iter_mut().for_each(|tally| tally.finish(sensor));
+    }
+
+    /// The planes' tallies; label 1 is the first.
+    pub fn tallies(&self) -> &[Tally] {
+        &self.tallies
+    }
+
+    /// Drops tallies; the labels of the others move up.
+    pub fn retain(&mut self, keep: impl FnMut(&Tally) -> bool) {
+        self.tallies.retain(keep);
+    }
+
+    /// Second pass: the records, in order of label. Shares are taken of the map's `valid_pixels`.
+    pub fn describe<T: Pixel>(
+        &mut self,
+        map: &DepthView<'_, T>,
+        runs: impl Iterator<Item = (Run, u16)>,
+        sensor: &Sensor,
+        valid_pixels: usize,
+        planes: &mut Vec<Plane>,
+    ) {
+        planes.clear();
+        planes.reserve(self.tallies.capacity());
+        self.distances.clear();
+        if let Some(camera) = sensor.intrinsics.filter(|_| sensor.measure != Measure::Disparity) {
+            self.measure_distances(map, runs, &camera, sensor.measure);
+        }
+        planes.extend((1..).zip(&self.tallies).map(|(label, tally)| {
+            let fit =
+                tally.fit.map(|fit| MapFit { gradient: [fit.abc[0], fit.abc[1]], offset: fit.abc[2], rms: fit.rms });
+            let metric = || self.distances.get(usize::from(label) - 1)?.metric(tally, &sensor.intrinsics?);
+            Plane {
+                label,
+                pixel_count: tally.pixel_count,
+                share_of_valid: share(tally.pixel_count, valid_pixels),
+                bounding_box: tally.bounding_box,
+                centroid: tally.centroid,
+                fit,
+                metric: metric(),
+            }
+        }));
+    }
+
+    fn measure_distances<T: Pixel>(
+        &mut self,
+        map: &DepthView<'_, T>,
+        runs: impl Iterator<Item = (Run, u16)>,
+        camera: &Intrinsics,
+        measure: Measure,
+    ) {
+        self.distances.reserve(self.tallies.capacity());
+        self.distances.resize(self.tallies.len(), Distances::default());
+        for (run, label) in runs {
+            let at = usize::from(label) - 1;
+            if let Some(plane) = &self.tallies[at].inverse_depth {
+                let values = &map.row(run.v as usize)[run.u_first as usize..=run.u_last as usize];
+                self.distances[at].add(&run, values, plane, camera, measure);
+            }
+        }
+    }
+}
+
+impl Tally {
+    /// A plane without a pixel.
+    fn none() -> Self {
+        Tally {
+            pixel_count: 0,
+            inner_pixels: 0,
+            bounding_box: PixelBox { u_min: u32::MAX, v_min: u32::MAX, u_max: 0, v_max: 0 },
+            centroid: [0.0; 2],
+            fit: None,
+            inverse_depth: None,
+            origin: [0.0; 2],
+            value: Quantity::default(),
+            inverse: Quantity::default(),
+        }
+    }
+
+    fn begin(&mut self, run: &Run, value: f64, inverse: f64) {
+        self.origin = [run.u_first.into(), run.v.into()];
+        self.value.first = value;
+        self.inverse.first = inverse;
+    }
+
+    fn finish(&mut self, sensor: &Sensor) {
+        let [u, v] = self.origin;
+        let sums = &self.value.sums;
+        self.centroid = [u + sums.u / sums.n, v + sums.v / sums.n];
+        self.fit = self.value.fit(self.origin);
+        self.inverse_depth = match sensor.measure {
+            Measure::Depth { .. } => self.inverse.fit(self.origin),
+            Measure::InverseDepth { slope, offset } => self.fit.map(|fit| fit.scaled(slope, offset)),
+            Measure::Disparity => None,
+        };
+    }
+}
+
+impl Quantity {
+    fn add<T: Pixel>(&mut self, u: f64, v: f64, values: &[T], quantity: impl Fn(T) -> f64) {
+        let first = self.first;
+        self.sums.add_run(u, v, &RunSums::of(values, |value| quantity(value) - first));
+    }
+
+    fn fit(&self, [u, v]: [f64; 2]) -> Option<AffineFit> {
+        self.sums.fit().map(|fit| fit.moved([u, v, self.first]))
+    }
+}
+
+impl PixelBox {
+    fn include(&mut self, run: &Run) {
+        self.u_min = self.u_min.min(run.u_first);
+        self.u_max = self.u_max.max(run.u_last);
+        self.v_min = self.v_min.min(run.v);
+        self.v_max = self.v_max.max(run.v);
+    }
+}
+
+/// The pixels at least `margin` away from the map's edge.
+struct Margin {
+    margin: u32,
+    width: u32,
+    height: u32,
+}
+
+impl Margin {
+    fn pixels(&self, run: &Run) -> usize {
+        let rows = self.margin..self.height.saturating_sub(self.margin);
+        if !rows.contains(&run.v) {
+            return 0;
+        }
+        let (first, end) = (run.u_first.max(self.margin), (run.u_last + 1).min(self.width.saturating_sub(self.margin)));
+        end.saturating_sub(first) as usize
+    }
+}
+
+impl Distances {
+    fn add<T: Pixel>(&mut self, run: &Run, values: &[T], plane: &AffineFit, camera: &Intrinsics, measure: Measure) {
+        let v = f64::from(run.v);
+        let (mut depth, mut depth_k) = (0.0, 0.0);
+        for (k, &value) in values.iter().enumerate() {
+            let u = f64::from(run.u_first) + k as f64;
+            let Some(q) = measure.inverse_depth(value.into()) else {
+                self.behind_infinity = true;
+                return;
+            };
+            let z = q.recip();
+            let relative = z * (q - plane.at(u, v));
+            self.squares += relative * relative;
+            depth += z;
+            depth_k += z * k as f64;
+        }
+        let ray = camera.ray(run.u_first.into(), v);
+        self.point[0] += ray[0] * depth + depth_k / camera.fx;
+        self.point[1] += ray[1] * depth;
+        self.point[2] += depth;
+    }
+
+    /// The metric plane: a point's distance from it is z |q - q of the plane| times the plane's
+    /// distance from the camera, since n . P + d = d (1 - z m . r).
+    fn metric(&self, tally: &Tally, camera: &Intrinsics) -> Option<MetricPlane> {
+        let fit = tally.inverse_depth.filter(|_| !self.behind_infinity)?;
+        let plane = fit::hessian(&fit, camera)?;
+        let n = tally.pixel_count as f64;
+        Some(MetricPlane {
+            plane,
+            rms_m: (self.squares / n).sqrt() * plane.distance,
+            centroid_m: self.point.map(|sum| sum / n),
+            covariance: fit::metric_covariance(&fit, camera),
+        })
+    }
+}

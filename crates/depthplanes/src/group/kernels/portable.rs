@@ -1,0 +1,105 @@
+//! The operations in plain Rust, in a shape that compilers vectorise.
+
+use super::{Isa, RowMasks, kernel};
+use crate::group::LinkRule;
+use crate::map::Pixel;
+
+pub(super) struct Portable;
+
+// `sse2` is in the baseline of every x86-64 processor and `neon` in that of aarch64.
+#[cfg(target_arch = "x86_64")]
+kernel!("portable", Portable, "sse2", || true);
+#[cfg(target_arch = "aarch64")]
+kernel!("portable", Portable, "neon", || true);
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+compile_error!("add a line with a feature of this processor's baseline");
+
+impl Isa for Portable {
+    fn masks_u8(row: &[u8], up: Option<&[u8]>, rule: &LinkRule<u8>, out: RowMasks<'_>) {
+        masks(row, up, rule, out);
+    }
+    fn masks_u16(row: &[u16], up: Option<&[u16]>, rule: &LinkRule<u16>, out: RowMasks<'_>) {
+        masks(row, up, rule, out);
+    }
+    fn masks_f32(row: &[f32], up: Option<&[f32]>, rule: &LinkRule<f32>, out: RowMasks<'_>) {
+        masks(row, up, rule, out);
+    }
+
+    #[inline(always)]
+    fn positions(mask: &[u64], out: &mut Vec<u16>) {
+        for (w, &word) in mask.iter().enumerate() {
+            let mut rest = word;
+            while rest != 0 {
+                out.push((w as u32 * 64 + rest.trailing_zeros()) as u16);
+                rest &= rest - 1;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn paint_row(valid: &[u64], starts: &[u64], label_of_run: &[u16], row: &mut [u16]) {
+        let mut run = 0;
+        let mut label = 0;
+        for (w, pixels) in row.chunks_mut(64).enumerate() {
+            let (valid, starts) = (valid[w], starts[w]);
+            if valid == 0 {
+                pixels.fill(0);
+                continue;
+            }
+            if starts == 0 && valid == u64::MAX {
+                pixels.fill(label);
+                continue;
+            }
+            for (bit, pixel) in pixels.iter_mut().enumerate() {
+                if starts >> bit & 1 == 1 {
+                    label = label_of_run[run];
+                    run += 1;
+                }
+                *pixel = label & ((valid >> bit & 1) as u16).wrapping_neg();
+            }
+        }
+    }
+}
+
+/// Masks of a row: flags in bytes, which vectorises, then eight bytes to eight bits.
+#[inline(always)]
+fn masks<T: Pixel>(row: &[T], up: Option<&[T]>, rule: &LinkRule<T>, out: RowMasks<'_>) {
+    let mut flags = [0u8; 64];
+    for (w, block) in row.chunks(64).enumerate() {
+        fill(&mut flags, block.iter().map(|&here| rule.validity.holds(here)));
+        out.valid[w] = pack(&flags);
+        let first = w * 64;
+        if first == 0 {
+            flags[0] = 0;
+            fill(&mut flags[1..], block[1..].iter().zip(row).map(|(&here, &left)| rule.links(here, left)));
+        } else {
+            fill(&mut flags, block.iter().zip(&row[first - 1..]).map(|(&here, &left)| rule.links(here, left)));
+        }
+        out.left[w] = pack(&flags);
+        out.above[w] = up.map_or(0, |up| {
+            fill(&mut flags, block.iter().zip(&up[first..]).map(|(&here, &up)| rule.links(here, up)));
+            pack(&flags)
+        });
+    }
+}
+
+/// Writes the conditions as 0 and 1, and 0 behind the last.
+#[inline(always)]
+fn fill(flags: &mut [u8], conditions: impl ExactSizeIterator<Item = bool>) {
+    let count = conditions.len().min(flags.len());
+    for (flag, condition) in flags.iter_mut().zip(conditions) {
+        *flag = condition.into();
+    }
+    flags[count..].fill(0);
+}
+
+/// Bit i = `flags[i]`. The product moves the eight low bits of eight bytes into the top byte.
+#[inline(always)]
+fn pack(flags: &[u8; 64]) -> u64 {
+    let mut word = 0;
+    for (k, eight) in flags.chunks_exact(8).enumerate() {
+        let bytes = u64::from_le_bytes(eight.try_into().expect("eight bytes"));
+        word |= (bytes.wrapping_mul(0x0102_0408_1020_4080) >> 56) << (8 * k);
+    }
+    word
+}

@@ -1,0 +1,245 @@
+//! A strip of rows: its bit masks, its runs, and the forest that joins runs to the runs above.
+//!
+//! In: rows of the map. Out: for each row the masks of valid pixels and run starts, for each run its
+//! first and last column and its parent. Columns of a row are bits, column u in bit u % 64 of word
+//! u / 64, so "left" is one bit lower.
+
+use super::kernels::Isa;
+use super::{LinkRule, Run, forest, reserve_to};
+use crate::map::{DepthView, Pixel};
+use std::ops::Range;
+
+/// The masks of one row, one bit a pixel.
+pub struct RowMasks<'a> {
+    /// Pixels that are valid.
+    pub valid: &'a mut [u64],
+    /// Pixels linked to their left neighbour.
+    pub left: &'a mut [u64],
+    /// Pixels linked to the neighbour above.
+    pub above: &'a mut [u64],
+}
+
+/// What a strip knows after [`scan`].
+#[derive(Debug, Default)]
+pub(super) struct Strip {
+    /// Its rows in the map.
+    pub(super) rows: Range<usize>,
+    /// Columns of the map.
+    pub(super) width: usize,
+    /// Words of a row's mask.
+    pub(super) words: usize,
+    /// Valid pixels, `words` a row.
+    pub(super) valid: Vec<u64>,
+    /// First pixels of runs, `words` a row.
+    pub(super) starts: Vec<u64>,
+    /// For each row the first of its runs, counted within the strip; one more at the end.
+    pub(super) row_first_run: Vec<u32>,
+    /// First column of each run.
+    pub(super) first_column: Vec<u16>,
+    /// Last column of each run.
+    pub(super) last_column: Vec<u16>,
+    /// Forest over the strip's own runs.
+    pub(super) parent: Vec<u32>,
+    /// Runs of the map before this strip's first.
+    pub(super) first_run: u32,
+    /// Valid pixels of the strip.
+    pub(super) valid_pixels: usize,
+    scratch: Scratch,
+}
+
+/// Masks that only the next row needs.
+#[derive(Debug, Default)]
+struct Scratch {
+    left: Vec<u64>,
+    left_of_row_above: Vec<u64>,
+    above: Vec<u64>,
+    ends: Vec<u64>,
+    runs_before: Vec<u32>,
+    runs_before_in_row_above: Vec<u32>,
+}
+
+impl Strip {
+    /// Makes room for the strip's worst case, so that scanning allocates nothing.
+    pub(super) fn prepare(&mut self, width: usize, rows: Range<usize>) {
+        let words = width.div_ceil(64);
+        let height = rows.len();
+        (self.rows, self.width, self.words) = (rows, width, words);
+        (self.first_run, self.valid_pixels) = (0, 0);
+        for masks in [&mut self.valid, &mut self.starts] {
+            masks.resize(height * words, 0);
+        }
+        let scratch = &mut self.scratch;
+        for masks in [&mut scratch.left, &mut scratch.left_of_row_above, &mut scratch.above, &mut scratch.ends] {
+            masks.clear();
+            masks.resize(words + 1, 0);
+        }
+        for counts in [&mut scratch.runs_before, &mut scratch.runs_before_in_row_above] {
+            counts.clear();
+            counts.resize(words, 0);
+        }
+        reserve_to(&mut self.row_first_run, height + 1);
+        reserve_to(&mut self.parent, height * width);
+        for columns in [&mut self.first_column, &mut self.last_column] {
+            reserve_to(columns, height * width + super::kernels::SLACK);
+        }
+    }
+
+    /// The strip's runs, with groups looked up in the map's flattened forest.
+    pub(super) fn runs<'a>(&'a self, root: &'a [u32]) -> impl Iterator<Item = Run> + 'a {
+        self.row_first_run.windows(2).zip(self.rows.clone()).flat_map(move |(bounds, v)| {
+            (bounds[0] as usize..bounds[1] as usize).map(move |run| Run {
+                v: v as u32,
+                u_first: self.first_column[run].into(),
+                u_last: self.last_column[run].into(),
+                group: root[self.first_run as usize + run],
+            })
+        })
+    }
+}
+
+/// Runs and forest of a strip, row by row: masks, runs, contacts with the row above.
+#[inline(always)]
+pub(super) fn scan<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>, strip: &mut Strip) {
+    for row in 0..strip.rows.len() {
+        let v = strip.rows.start + row;
+        let up = (row > 0).then(|| map.row(v - 1));
+        row_masks::<I, T>(map.row(v), up, rule, strip, row);
+        row_runs::<I>(strip, row);
+        if row > 0 {
+            join_row_above(strip, row);
+        }
+        let scratch = &mut strip.scratch;
+        std::mem::swap(&mut scratch.left, &mut scratch.left_of_row_above);
+        std::mem::swap(&mut scratch.runs_before, &mut scratch.runs_before_in_row_above);
+    }
+    strip.row_first_run.push(strip.parent.len() as u32);
+}
+
+#[inline(always)]
+fn row_masks<I: Isa, T: Pixel>(row: &[T], up: Option<&[T]>, rule: &LinkRule<T>, strip: &mut Strip, at: usize) {
+    let words = strip.words;
+    let masks = RowMasks {
+        valid: &mut strip.valid[at * words..][..words],
+        left: &mut strip.scratch.left[..words],
+        above: &mut strip.scratch.above[..words],
+    };
+    T::masks::<I>(row, up, rule, masks);
+}
+
+/// Lists the runs of a row: a run starts at a valid pixel that is not linked to its left, and ends
+/// before the next pixel that is not.
+#[inline(always)]
+fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
+    let words = strip.words;
+    let valid = &strip.valid[row * words..][..words];
+    let starts = &mut strip.starts[row * words..][..words];
+    let scratch = &mut strip.scratch;
+    let left = &scratch.left[..words + 1];
+    let ends = &mut scratch.ends[..words];
+    let before = &mut scratch.runs_before[..words];
+    let first = strip.parent.len() as u32;
+    let mut runs = first;
+    for w in 0..words {
+        starts[w] = valid[w] & !left[w];
+        ends[w] = valid[w] & !(left[w] >> 1 | left[w + 1] << 63);
+        before[w] = runs;
+        runs += starts[w].count_ones();
+        strip.valid_pixels += valid[w].count_ones() as usize;
+    }
+    strip.row_first_run.push(first);
+    strip.parent.extend(first..runs);
+    I::positions(starts, &mut strip.first_column);
+    I::positions(ends, &mut strip.last_column);
+}
+
+/// Unites the runs of a row with the runs above that they touch.
+///
+/// Only the first pixel of each touching pair of runs matters. A run's first such contact makes it
+/// a child without any search, for until then it is alone; the few later ones need a union.
+#[inline(always)]
+fn join_row_above(strip: &mut Strip, row: usize) {
+    let words = strip.words;
+    let starts = &strip.starts[row * words..][..words];
+    let starts_above = &strip.starts[(row - 1) * words..][..words];
+    let scratch = &strip.scratch;
+    let left = &scratch.left[..words];
+    let left_above = &scratch.left_of_row_above[..words];
+    let above = &scratch.above[..words];
+    let before = &scratch.runs_before[..words];
+    let before_above = &scratch.runs_before_in_row_above[..words];
+    let parent = &mut strip.parent[..];
+    let mut contacts = Contacts::default();
+    for w in 0..words {
+        let (mut first, mut later) = contacts.next(above[w], left[w], left_above[w]);
+        while first != 0 {
+            let (here, there) = runs_at(first, starts[w], before[w], starts_above[w], before_above[w]);
+            parent[here as usize] = parent[there as usize];
+            first &= first - 1;
+        }
+        while later != 0 {
+            let (here, there) = runs_at(later, starts[w], before[w], starts_above[w], before_above[w]);
+            forest::unite(parent, here, there);
+            later &= later - 1;
+        }
+    }
+}
+
+/// The runs here and above at the lowest set bit of `contact`: a pixel's run is the number of run
+/// starts up to it.
+#[inline(always)]
+fn runs_at(contact: u64, starts: u64, before: u32, starts_above: u64, before_above: u32) -> (u32, u32) {
+    let up_to = contact ^ (contact - 1);
+    (before + (starts & up_to).count_ones() - 1, before_above + (starts_above & up_to).count_ones() - 1)
+}
+
+/// Walks a row's words and finds where runs touch the runs above.
+#[derive(Default)]
+struct Contacts {
+    above: u64,
+    contact: u64,
+    flood: bool,
+}
+
+impl Contacts {
+    /// From a word of the masks, the contacts that are the first of their run, and the others.
+    #[inline(always)]
+    fn next(&mut self, above: u64, left: u64, left_above: u64) -> (u64, u64) {
+        // A pixel linked upwards whose left neighbour is too, both being in the same runs, adds nothing.
+        let contact = above & !((above << 1 | self.above) & left & left_above);
+        // Pixels with a contact before them in their run: adding a bit to a block of ones carries
+        // through to its end, so the ones that the sum clears are those behind the added bit.
+        let behind = (contact << 1 | self.contact) & left;
+        let (sum, carry_1) = left.overflowing_add(behind);
+        let (sum, carry_2) = sum.overflowing_add(self.flood.into());
+        let covered = (left & !sum) | behind;
+        (self.above, self.contact, self.flood) = (above >> 63, contact >> 63, carry_1 | carry_2);
+        (contact & !covered, contact & covered)
+    }
+}
+
+/// Unites the runs on both sides of the border between two strips in the map's forest.
+#[inline(always)]
+pub(super) fn stitch<I: Isa, T: Pixel>(
+    map: &DepthView<'_, T>,
+    rule: &LinkRule<T>,
+    upper: &Strip,
+    lower: &mut Strip,
+    parent: &mut [u32],
+) {
+    let v = lower.rows.start;
+    row_masks::<I, T>(map.row(v), Some(map.row(v - 1)), rule, lower, 0);
+    let last_row = upper.rows.len() - 1;
+    let starts_above = &upper.starts[last_row * upper.words..];
+    let mut before = lower.first_run;
+    let mut before_above = upper.first_run + upper.row_first_run[last_row];
+    for w in 0..lower.words {
+        let mut contact = lower.scratch.above[w];
+        while contact != 0 {
+            let (here, there) = runs_at(contact, lower.starts[w], before, starts_above[w], before_above);
+            forest::unite(parent, here, there);
+            contact &= contact - 1;
+        }
+        before += lower.starts[w].count_ones();
+        before_above += starts_above[w].count_ones();
+    }
+}
