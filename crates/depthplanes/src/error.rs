@@ -57,6 +57,15 @@ pub enum Error {
         /// The names there are.
         accepted: String,
     },
+    /// A setting given as text that is not of its kind.
+    Text {
+        /// Name of the setting.
+        name: &'static str,
+        /// The text given.
+        given: String,
+        /// What is accepted.
+        accepted: String,
+    },
     /// A camera or a measure that describes no real one.
     Camera {
         /// The quantity at fault.
@@ -106,6 +115,9 @@ impl fmt::Display for Error {
             }
             Error::Unknown { what, given, accepted } => {
                 write!(f, "there is no {what} `{given}`; there are: {accepted}")
+            }
+            Error::Text { name, given, accepted } => {
+                write!(f, "`{name}` is `{given}`; accepted: {accepted}")
             }
             Error::Camera { name, given, accepted } => {
                 write!(f, "the camera's {name} is {given}; accepted: {accepted}")

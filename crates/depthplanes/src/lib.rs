@@ -15,6 +15,7 @@ pub mod fit;
 pub mod group;
 pub mod map;
 pub mod methods;
+pub mod scene;
 pub mod select;
 
 pub use camera::{Hessian, Intrinsics, Measure, Sensor};
