@@ -6,7 +6,7 @@
 
 mod flags;
 
-use clap::{Arg, ArgAction, ArgMatches, builder::PossibleValuesParser, value_parser};
+use clap::{Arg, ArgMatches, builder::PossibleValuesParser, value_parser};
 use depthplanes::methods::{self, METHODS, MethodInfo};
 use depthplanes_io::outputs::{OUTPUTS, Output};
 use std::io::Write;

@@ -1,9 +1,10 @@
 //! Flags that several commands share, and those that come from the libraries' tables.
 
-use clap::{Arg, ArgAction, ArgMatches, builder::PossibleValuesParser, value_parser};
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use depthplanes::methods::{METHODS, Param};
-use depthplanes_io::SENSOR_PRESETS;
 use depthplanes_io::encoding::ENCODINGS;
+use depthplanes_io::presets::SENSOR_PRESETS;
 use std::path::PathBuf;
 
 /// How the inputs are to be read, as given.
@@ -11,10 +12,11 @@ use std::path::PathBuf;
 pub(crate) struct Reading {
     pub(crate) encoding: Option<String>,
     pub(crate) preset: Option<String>,
-    pub(crate) units_per_metre: Option<f64>,
+    pub(crate) scale: Option<f64>,
     pub(crate) intrinsics: Option<[f64; 4]>,
     pub(crate) camera: Option<PathBuf>,
     pub(crate) disparity: bool,
+    pub(crate) swap_bytes: bool,
     pub(crate) baseline: Option<f64>,
     pub(crate) focal: Option<f64>,
     pub(crate) doffs: Option<f64>,
@@ -31,10 +33,11 @@ impl Reading {
         Reading {
             encoding: text("encoding"),
             preset: text("preset"),
-            units_per_metre: number("scale"),
+            scale: number("scale"),
             intrinsics: matches.get_one("intrinsics").copied(),
             camera: matches.get_one("camera").cloned(),
             disparity: matches.get_flag("disparity"),
+            swap_bytes: matches.get_flag("swap-bytes"),
             baseline: number("baseline"),
             focal: number("focal"),
             doffs: number("doffs"),
@@ -54,18 +57,20 @@ pub(super) fn inputs() -> Arg {
 }
 
 pub(super) fn reading() -> Vec<Arg> {
-    let encodings = PossibleValuesParser::new(ENCODINGS.iter().map(|encoding| encoding.name));
+    let encodings = ENCODINGS.iter().map(|encoding| PossibleValue::new(encoding.name).aliases(encoding.aliases));
     let presets = PossibleValuesParser::new(SENSOR_PRESETS.iter().map(|preset| preset.name));
     let listed = |arg: Arg| arg.hide_possible_values(true);
     let all = [
-        listed(Arg::new("encoding").value_parser(encodings).value_name("NAME"))
+        listed(Arg::new("encoding").value_parser(PossibleValuesParser::new(encodings)).value_name("NAME"))
             .help("What the numbers mean; `depthplanes encodings` lists the names"),
         listed(Arg::new("preset").value_parser(presets).value_name("SENSOR"))
             .help("Encoding and camera of a known sensor; `depthplanes presets` lists the names"),
-        number("scale", "UNITS_PER_METRE").help("Map units in a metre: 1000 for millimetres, 5000 for TUM"),
+        number("scale", "UNITS_PER_METRE")
+            .help("Map units in a metre, or what `depthplanes encodings` states as the encoding's scale"),
         numbers::<4>("intrinsics", "FX,FY,CX,CY").help("Focal lengths and principal point, pixels"),
         path("camera", "FILE").help("Camera file: ROS, Open3D, BOP, KITTI, Middlebury and others"),
         switch("disparity", "The numbers are disparities; with --focal and --baseline they become metric"),
+        switch("swap-bytes", "Swap the two bytes of 16-bit samples"),
         number("baseline", "METRES").help("Baseline of the stereo rig"),
         number("focal", "PIXELS").help("Focal length of the stereo rig"),
         number("doffs", "PIXELS").help("Difference of the two principal points (Middlebury's doffs)"),

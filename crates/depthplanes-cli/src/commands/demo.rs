@@ -16,7 +16,7 @@ const PARAMETERS: &[(&str, f64)] = &[("theta", 8.0), ("min", 500.0)];
 
 pub(super) fn run(folder: &Path, out: &mut dyn Write) -> Outcome {
     let frame = load::scene(SCENE)?;
-    let recipe = Recipe::new(&METHODS[0], PARAMETERS, 1)?;
+    let recipe = Recipe::new(METHODS[0], PARAMETERS, 1)?;
     let (detection, _) = Runner::new(&recipe).detect(&frame, 0)?;
     let source = format!("scene:{SCENE}");
     let report = Report {
@@ -45,7 +45,7 @@ fn depth_png(frame: &Frame) -> Vec<u8> {
 }
 
 fn tell(report: &Report<'_>, depth: &Path, files: &[(&Output, PathBuf)], out: &mut dyn Write) -> Outcome {
-    write!(out, "{}{}\n", show::summary(report), show::table(report, 12))?;
+    writeln!(out, "{}{}", show::summary(report), show::table(report, 12))?;
     writeln!(out, "{}: the depth map, 16 bits, millimetres", depth.display())?;
     for (output, path) in files {
         writeln!(out, "{}: {}", path.display(), output.about)?;

@@ -5,6 +5,7 @@ use crate::failure::{Failure, Outcome, note};
 use crate::inputs::{self, Input};
 use crate::run::{Recipe, Runner};
 use crate::{load, pool, show};
+use depthplanes_io::ReadOptions;
 use depthplanes_io::outputs::{self, OUTPUTS, Output, Report};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write;
@@ -14,12 +15,16 @@ pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     let recipe = Recipe::new(wanted.method, &wanted.parameters, wanted.threads)?;
     let inputs = inputs::expand(&wanted.inputs)?;
     check_outputs(wanted, &inputs)?;
+    let plan = Plan { wanted, recipe: &recipe, options: load::options(&wanted.reading)?, alone: inputs.len() == 1 };
     let bar = progress(inputs.len());
     let mut tally = Tally::default();
     let work = || {
         let mut runner = Runner::new(&recipe);
-        let (recipe, inputs) = (&recipe, &inputs);
-        move |at: usize| process(wanted, recipe, &mut runner, &inputs[at], inputs.len() == 1)
+        let (plan, inputs) = (&plan, &inputs);
+        move |at: usize| {
+            let input = &inputs[at];
+            plan.process(&mut runner, input).map_err(|failure| failure.of_input(&input.name()))
+        }
     };
     pool::in_order(inputs.len(), wanted.jobs, work, |_, done| {
         bar.inc(1);
@@ -35,28 +40,36 @@ struct Done {
     notes: Vec<String>,
 }
 
-fn process(wanted: &Detect, recipe: &Recipe, runner: &mut Runner<'_>, input: &Input, alone: bool) -> Outcome<Done> {
-    let name = input.name();
-    let frame = load::frame(input, &wanted.reading).map_err(|failure| failure.of_input(&name))?;
-    let (detection, times) = runner.detect(&frame, wanted.repeat).map_err(|failure| failure.of_input(&name))?;
-    let report = Report {
-        source: &name,
-        frame: &frame,
-        method: recipe.method,
-        parameters: &recipe.values,
-        detection: &detection,
-        times: times.as_ref(),
-        legend: wanted.legend,
-    };
-    let written = write(wanted, input, &report).map_err(|failure| failure.of_input(&name))?;
-    let mut notes: Vec<String> = frame.warnings.iter().map(|warning| format!("{name}: {warning}")).collect();
-    let text = if wanted.json {
-        json(&report, alone)
-    } else {
+/// What is done with each input.
+struct Plan<'a> {
+    wanted: &'a Detect,
+    recipe: &'a Recipe,
+    options: ReadOptions,
+    alone: bool,
+}
+
+impl Plan<'_> {
+    fn process(&self, runner: &mut Runner<'_>, input: &Input) -> Outcome<Done> {
+        let name = input.name();
+        let frame = load::frame(input, &self.options)?;
+        let (detection, times) = runner.detect(&frame, self.wanted.repeat)?;
+        let report = Report {
+            source: &name,
+            frame: &frame,
+            method: self.recipe.method,
+            parameters: &self.recipe.values,
+            detection: &detection,
+            times: times.as_ref(),
+            legend: self.wanted.legend,
+        };
+        let written = write(self.wanted, input, &report)?;
+        let mut notes: Vec<String> = frame.warnings.iter().map(|warning| format!("{name}: {warning}")).collect();
+        if self.wanted.json {
+            return Ok(Done { text: json(&report, self.alone), notes });
+        }
         notes.extend(show::advice(&report));
-        readable(wanted, &report, &written)
-    };
-    Ok(Done { text, notes })
+        Ok(Done { text: readable(self.wanted, &report, &written), notes })
+    }
 }
 
 fn json(report: &Report<'_>, alone: bool) -> String {

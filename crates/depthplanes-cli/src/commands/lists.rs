@@ -3,9 +3,9 @@
 use crate::failure::Outcome;
 use crate::table::{Align, aligned, row};
 use depthplanes::methods::{METHODS, MethodInfo, Param};
-use depthplanes_io::SENSOR_PRESETS;
 use depthplanes_io::encoding::ENCODINGS;
 use depthplanes_io::formats::FORMATS;
+use depthplanes_io::presets::SENSOR_PRESETS;
 use std::io::Write;
 
 pub(super) fn methods(out: &mut dyn Write) -> Outcome {
@@ -44,14 +44,17 @@ pub(super) fn formats(out: &mut dyn Write) -> Outcome {
 }
 
 pub(super) fn encodings(out: &mut dyn Write) -> Outcome {
-    let mut rows = vec![row(["encoding", "about"])];
-    rows.extend(ENCODINGS.iter().map(|encoding| row([encoding.name, encoding.about])));
+    let mut rows = vec![row(["encoding", "unit", "--scale", "about"])];
+    rows.extend(ENCODINGS.iter().map(|encoding| row([encoding.name, encoding.unit, encoding.scale, encoding.about])));
     print(&rows, out)
 }
 
 pub(super) fn presets(out: &mut dyn Write) -> Outcome {
-    let mut rows = vec![row(["preset", "about"])];
-    rows.extend(SENSOR_PRESETS.iter().map(|preset| row([preset.name, preset.about])));
+    let mut rows = vec![row(["preset", "encoding", "camera for", "about"])];
+    rows.extend(SENSOR_PRESETS.iter().map(|preset| {
+        let size = preset.camera.map_or("-".to_string(), |(width, height, _)| format!("{width} x {height}"));
+        row([preset.name, preset.encoding, &size, preset.about])
+    }));
     print(&rows, out)
 }
 
