@@ -115,7 +115,7 @@ fn program() -> clap::Command {
             clap::Command::new("methods").about("Lists the methods"),
             clap::Command::new("params")
                 .about("Lists the parameters of the methods: default, unit, range, meaning")
-                .arg(method_arg("method").value_name("METHOD").help("Only this method's")),
+                .arg(method_arg("method").help("Only this method's")),
             clap::Command::new("formats").about("Lists the file formats that can be read"),
             clap::Command::new("encodings").about("Lists what a file's numbers can mean"),
             clap::Command::new("presets").about("Lists the sensors whose encoding and camera are known"),
@@ -128,10 +128,7 @@ fn program() -> clap::Command {
 
 fn detect_command() -> clap::Command {
     clap::Command::new("detect")
-        .about("Finds the planes of maps")
-        .long_about(
-            "Finds the planes of depth or disparity maps. Without an output flag it prints a table of the planes.",
-        )
+        .about("Finds the planes of depth or disparity maps; without an output flag it prints a table")
         .after_help(EXIT_CODES)
         .arg(flags::inputs())
         .args(flags::reading())
@@ -186,7 +183,7 @@ fn completions_command() -> clap::Command {
 }
 
 fn method_arg(id: &'static str) -> Arg {
-    Arg::new(id).value_parser(PossibleValuesParser::new(METHODS.iter().map(|method| method.name)))
+    Arg::new(id).value_name("METHOD").value_parser(PossibleValuesParser::new(METHODS.iter().map(|method| method.name)))
 }
 
 fn detect(matches: &ArgMatches) -> Detect {

@@ -142,7 +142,8 @@ fn units_advice(report: &Report<'_>) -> Vec<String> {
     for (param, value) in report.method.params.iter().zip(report.parameters) {
         let given_m = value * metres;
         let odd = given_m > 20.0 * USUAL_STEP_M || (few && given_m < USUAL_STEP_M / 2.0);
-        if param.unit == "map units" && odd {
+        // 0 switches a parameter off, whatever the unit.
+        if param.unit == "map units" && *value > 0.0 && odd {
             notes.push(format!(
                 "{}: {} {value} is {} here, since a unit of the map is {}; try --{} {}",
                 report.source,

@@ -9,10 +9,10 @@ use depthplanes_io::{Frame, Pixels};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// A furnished room in millimetres.
-const SCENE: &str = "room:seed=7";
-/// Millimetre maps of such a room vary by a few units from pixel to pixel.
-const PARAMETERS: &[(&str, f64)] = &[("theta", 8.0), ("min", 500.0)];
+/// A furnished room without noise, in millimetres.
+const SCENE: &str = "room:sensor=clean_mm";
+/// Millimetres between neighbours of a slanted wall or of the floor, and the size of a table leg.
+const PARAMETERS: &[(&str, f64)] = &[("theta", 10.0), ("min", 300.0)];
 
 pub(super) fn run(folder: &Path, out: &mut dyn Write) -> Outcome {
     let frame = load::scene(SCENE)?;
@@ -54,5 +54,5 @@ fn tell(report: &Report<'_>, depth: &Path, files: &[(&Output, PathBuf)], out: &m
     let picture = overlay.map(|(_, path)| path.display().to_string()).unwrap_or_default();
     writeln!(out, "\nLook at {picture}. The same again from the file:")?;
     let given: Vec<String> = PARAMETERS.iter().map(|(name, value)| format!("--{name} {value}")).collect();
-    Ok(writeln!(out, "  depthplanes detect {} --encoding mm {}", depth.display(), given.join(" "))?)
+    Ok(writeln!(out, "  depthplanes detect {} --encoding millimetre {}", depth.display(), given.join(" "))?)
 }

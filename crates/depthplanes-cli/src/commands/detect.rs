@@ -28,7 +28,7 @@ pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     };
     pool::in_order(inputs.len(), wanted.jobs, work, |_, done| {
         bar.inc(1);
-        bar.suspend(|| print(done, &mut tally, out))
+        bar.suspend(|| print(done, plan.alone, &mut tally, out))
     })?;
     bar.finish_and_clear();
     tally.outcome(inputs.len())
@@ -151,17 +151,21 @@ fn progress(inputs: usize) -> ProgressBar {
     ProgressBar::new(inputs as u64).with_style(style.expect("the template is right"))
 }
 
-/// Prints what an input came to; the only errors are those of standard output.
-fn print(done: Outcome<Done>, tally: &mut Tally, out: &mut dyn Write) -> Outcome {
+/// Prints what an input came to. A failure among several inputs is reported and counted; that of a
+/// single input is the command's own.
+fn print(done: Outcome<Done>, alone: bool, tally: &mut Tally, out: &mut dyn Write) -> Outcome {
     match done {
         Ok(done) => {
             done.notes.iter().for_each(|message| note(message));
             out.write_all(done.text.as_bytes())?;
-            out.flush()?;
+            Ok(out.flush()?)
         }
-        Err(failure) => tally.add(failure),
+        Err(failure) if alone => Err(failure),
+        Err(failure) => {
+            tally.add(&failure);
+            Ok(())
+        }
     }
-    Ok(())
 }
 
 /// The inputs that failed.
@@ -172,7 +176,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn add(&mut self, failure: Failure) {
+    fn add(&mut self, failure: &Failure) {
         failure.report();
         self.failed += 1;
         self.machine |= failure.is_machine();
@@ -183,12 +187,9 @@ impl Tally {
         if self.failed == 0 {
             return Ok(());
         }
-        let message = match inputs {
-            1 => "nothing was written for it".to_string(),
-            _ => {
-                format!("{} of {inputs} inputs failed, nothing was written for them; the others are done", self.failed)
-            }
-        };
+        let good = inputs - self.failed;
+        let message =
+            format!("{} of {inputs} inputs failed and have no output; the other {good} are done", self.failed);
         Err(if self.machine { Failure::machine(message) } else { Failure::request(message) })
     }
 }

@@ -21,6 +21,7 @@ pub(super) fn run(words: &[String], reading: &Reading, as_json: bool, out: &mut 
         match look(input, &options).map_err(|failure| failure.of_input(&input.name())) {
             Ok((_, seen)) if as_json => writeln!(out, "{}", record(&input.name(), &seen))?,
             Ok((frame, seen)) => out.write_all(readable(&input.name(), &frame, &seen).as_bytes())?,
+            Err(failure) if inputs.len() == 1 => return Err(failure),
             Err(failure) => {
                 out.flush()?;
                 failure.report();

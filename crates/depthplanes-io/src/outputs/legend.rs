@@ -4,9 +4,9 @@ use super::picture::Picture;
 use super::{colour, font};
 use depthplanes::{Detection, Plane};
 
-const PAPER: [u8; 3] = [24, 24, 30];
+const PAPER: [u8; 3] = [38, 38, 44];
 const INK: [u8; 3] = [232, 232, 232];
-const FAINT: [u8; 3] = [150, 150, 158];
+const FAINT: [u8; 3] = [176, 176, 182];
 /// Pictures at least this high get letters of twice the size.
 const TALL: usize = 360;
 /// Even a small picture names this many planes.

@@ -8,7 +8,7 @@ use std::fmt::Write;
 
 pub(super) const OUTPUT: Output = Output {
     name: "planes",
-    about: "the planes with their equations: JSON with the whole record, or CSV with one line a plane",
+    about: "planes with their equations, as JSON with the whole record or as CSV",
     file: "planes.json",
     needs_camera: false,
     writers: &[
