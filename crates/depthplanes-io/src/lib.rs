@@ -1,6 +1,19 @@
 //! Bytes to frames and detections to bytes: the only crate with codecs.
+//!
+//! `bytes -> formats -> Image -> encoding -> Frame`: a format says what the numbers are, an
+//! encoding what they mean.
+#![forbid(unsafe_code)]
 
+pub mod camera_file;
+pub mod encoding;
+pub mod error;
+pub mod formats;
 mod frame;
+pub mod inspect;
 pub mod outputs;
+pub mod presets;
+pub mod read;
 
+pub use error::{Error, Result};
 pub use frame::{Frame, Pixels};
+pub use read::{ReadOptions, decode, read};

@@ -1,0 +1,296 @@
+//! What a map's numbers mean: unit, bit packing, the value for "missing".
+//!
+//! In: an [`Image`] and what the user knows. Out: the same image, unpacked only where the encoding
+//! packs bits (`kinect-sdk`, `sun-rgbd`), and its [`Meaning`]. Integer maps otherwise keep the
+//! numbers that are in the file, because the paper's threshold counts grey levels.
+//!
+//! Without a stated encoding [`likely`] decides by the sample type:
+//! PFM -> `middlebury`, float -> `metre` (or `millimetre` if the median is above 100), 16-bit ->
+//! `millimetre`, 8-bit -> `grey`. It never guesses a bit packing; the traps of
+//! [`crate::inspect`] say when the numbers look like one.
+
+use depthplanes::Measure;
+
+use crate::error::{Error, Result};
+use crate::formats::Image;
+use crate::frame::Pixels;
+
+/// A rectified stereo rig, for `z = focal_px * baseline_m / (disparity + doffs_px)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stereo {
+    /// Focal length, pixels.
+    pub focal_px: f64,
+    /// Distance of the two cameras, metres.
+    pub baseline_m: f64,
+    /// Difference of the two principal points, pixels; 0 for most rigs.
+    pub doffs_px: f64,
+}
+
+/// What the user says beside the encoding's name.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Given {
+    /// The encoding's scale; what it counts is [`Encoding::scale`].
+    pub scale: Option<f64>,
+    /// The stereo rig, for encodings of disparity.
+    pub stereo: Option<Stereo>,
+}
+
+/// The numbers of one map, explained.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Meaning {
+    /// Depth, inverse depth or disparity.
+    pub measure: Measure,
+    /// Smallest and largest valid value, map units, where the encoding limits them.
+    pub valid_range: Option<(f64, f64)>,
+}
+
+/// One encoding.
+#[derive(Clone, Copy, Debug)]
+pub struct Encoding {
+    /// Its name, as in [`crate::Frame::encoding`].
+    pub name: &'static str,
+    /// Other names of it.
+    pub aliases: &'static [&'static str],
+    /// One line for the table of encodings.
+    pub about: &'static str,
+    /// What a map value counts.
+    pub unit: &'static str,
+    /// What the option `scale` counts, with its default; empty if there is none to state.
+    pub scale: &'static str,
+    /// The value for "missing" beside 0, NaN and the infinities.
+    pub missing: Option<f64>,
+    /// Whether the values are disparities, which need a [`Stereo`] rig to become metres.
+    pub disparity: bool,
+    /// Unpacks the image and explains it.
+    pub apply: fn(&mut Image, &Given) -> Result<Meaning>,
+}
+
+const DEPTH: Encoding = Encoding {
+    name: "millimetre",
+    aliases: &["mm", "openni"],
+    about: "depth in millimetres: OpenNI, ROS 16UC1, Kinect v2, Azure Kinect, 7-Scenes",
+    unit: "mm",
+    scale: "map units per metre, 1000",
+    missing: None,
+    disparity: false,
+    apply: |image, given| depth(image, given.scale.unwrap_or(1000.0)),
+};
+
+const DISPARITY: Encoding = Encoding {
+    name: "disparity",
+    aliases: &[],
+    about: "disparity in pixels",
+    unit: "px",
+    scale: "map units per pixel of disparity, 1",
+    missing: None,
+    disparity: true,
+    apply: |image, given| disparity(image, given, given.scale.unwrap_or(1.0)),
+};
+
+/// All encodings.
+pub const ENCODINGS: &[Encoding] = &[
+    DEPTH,
+    Encoding {
+        name: "metre",
+        aliases: &["m", "meter"],
+        about: "depth in metres: ROS 32FC1, most NPY and EXR files",
+        unit: "m",
+        scale: "map units per metre, 1",
+        apply: |image, given| depth(image, given.scale.unwrap_or(1.0)),
+        ..DEPTH
+    },
+    Encoding {
+        name: "tum",
+        aliases: &["icl", "icl-nuim"],
+        about: "depth in 1/5000 m: TUM RGB-D, ICL-NUIM",
+        unit: "1/5000 m",
+        scale: "map units per metre, 5000",
+        apply: |image, given| depth(image, given.scale.unwrap_or(5000.0)),
+        ..DEPTH
+    },
+    Encoding {
+        name: "realsense",
+        aliases: &["z16"],
+        about: "RealSense Z16: depth in the camera's depth units",
+        unit: "depth unit",
+        scale: "metres per map unit as the camera's get_depth_scale states it, 0.001",
+        apply: |image, given| depth(image, 1.0 / given.scale.unwrap_or(0.001)),
+        ..DEPTH
+    },
+    Encoding {
+        name: "kinect-sdk",
+        aliases: &[],
+        about: "Kinect SDK 1: millimetres above three bits of player index",
+        unit: "mm",
+        scale: "",
+        apply: |image, given| unpacked("kinect-sdk", image, given, |value| value >> 3),
+        ..DEPTH
+    },
+    Encoding {
+        name: "sun-rgbd",
+        aliases: &["sun"],
+        about: "SUN RGB-D: millimetres, bits rotated left by three",
+        unit: "mm",
+        scale: "",
+        apply: |image, given| unpacked("sun-rgbd", image, given, |value| value.rotate_right(3)),
+        ..DEPTH
+    },
+    Encoding {
+        name: "kinect-raw",
+        aliases: &["freenect"],
+        about: "Kinect v1 raw 11-bit disparity, 2047 = missing",
+        unit: "raw disparity",
+        scale: "",
+        missing: Some(2047.0),
+        apply: kinect_raw,
+        ..DEPTH
+    },
+    DISPARITY,
+    Encoding {
+        name: "kitti",
+        aliases: &[],
+        about: "16-bit disparity in 1/256 pixel: KITTI, many stereo programs",
+        unit: "1/256 px",
+        scale: "map units per pixel of disparity, 256",
+        apply: |image, given| disparity(image, given, given.scale.unwrap_or(256.0)),
+        ..DISPARITY
+    },
+    Encoding {
+        name: "middlebury",
+        aliases: &["eth3d"],
+        about: "Middlebury disparity: float pixels (PFM), or integers with the data set's scale",
+        unit: "px times scale",
+        scale: "map units per pixel of disparity, 1 for float maps, to be stated for integers",
+        apply: middlebury,
+        ..DISPARITY
+    },
+    Encoding {
+        name: "grey",
+        aliases: &["gray"],
+        about: "grey levels of unknown unit: planes in pixels, no metres",
+        unit: "grey level",
+        scale: "",
+        apply: |_, given| no_scale("grey", given).map(|()| Meaning { measure: Measure::Disparity, valid_range: None }),
+        ..DEPTH
+    },
+];
+
+/// The encoding of that name or alias.
+///
+/// # Errors
+/// [`Error::Parameter`] with the names there are.
+pub fn by_name(name: &str) -> Result<&'static Encoding> {
+    ENCODINGS.iter().find(|encoding| encoding.name == name || encoding.aliases.contains(&name)).ok_or_else(|| {
+        let names: Vec<_> = ENCODINGS.iter().map(|encoding| encoding.name).collect();
+        Error::parameter("--encoding", name, names.join(", "))
+    })
+}
+
+/// The encoding to assume when none is stated, and why; the rule stands in the module header.
+/// `disparity` says that the numbers are known to be disparities.
+pub fn likely(pixels: &Pixels, format: &str, disparity: bool) -> (&'static Encoding, String) {
+    let (name, why) = match pixels {
+        Pixels::F32(_) if format == "pfm" => ("middlebury", "PFM files hold disparity in pixels".to_string()),
+        Pixels::F32(_) if disparity => ("disparity", "float disparity is in pixels".to_string()),
+        Pixels::U8(_) if disparity => ("middlebury", "8-bit disparity has a scale of its data set".to_string()),
+        Pixels::U16(values) if disparity => match values.iter().max() {
+            Some(largest) if *largest > 2048 => ("kitti", format!("{largest} pixels of disparity would be too many")),
+            _ => ("disparity", "the values are small enough to be pixels".to_string()),
+        },
+        Pixels::F32(values) => match typical(values) {
+            Some(median) if median > 100.0 => ("millimetre", format!("the median {median} is too far for metres")),
+            _ => ("metre", "float maps hold metres".to_string()),
+        },
+        Pixels::U16(_) => ("millimetre", "16-bit maps mostly hold millimetres".to_string()),
+        Pixels::U8(_) => ("grey", "8-bit maps have no common unit".to_string()),
+    };
+    (by_name(name).expect("a name of the table"), why)
+}
+
+/// The median of at most 4096 positive values.
+fn typical(values: &[f32]) -> Option<f32> {
+    let step = values.len() / 4096 + 1;
+    let mut sample: Vec<f32> = values.iter().step_by(step).copied().filter(|z| *z > 0.0 && z.is_finite()).collect();
+    sample.sort_by(f32::total_cmp);
+    sample.get(sample.len() / 2).copied()
+}
+
+/// Depth, negative floats missing.
+fn depth(image: &Image, units_per_metre: f64) -> Result<Meaning> {
+    let measure = Measure::depth(1.0 / positive_scale(units_per_metre)?)?;
+    Ok(Meaning { measure, valid_range: float_range(image, 0.0) })
+}
+
+/// Disparity, metric if the rig is known.
+fn disparity(image: &Image, given: &Given, units_per_pixel: f64) -> Result<Meaning> {
+    let pixels_per_unit = 1.0 / positive_scale(units_per_pixel)?;
+    let (measure, lowest) = match given.stereo {
+        Some(rig) => {
+            let measure = Measure::stereo(pixels_per_unit, rig.focal_px, rig.baseline_m, rig.doffs_px)?;
+            (measure, -rig.doffs_px * units_per_pixel)
+        }
+        None => (Measure::Disparity, 0.0),
+    };
+    Ok(Meaning { measure, valid_range: float_range(image, lowest) })
+}
+
+fn middlebury(image: &mut Image, given: &Given) -> Result<Meaning> {
+    let float = matches!(image.pixels, Pixels::F32(_));
+    if !float && given.scale.is_none() && given.stereo.is_some() {
+        let accepted = "map units per pixel of disparity, stated by the data set (8 for 2001, 4 for 2003, 3 for the \
+             third-size maps of 2005 and 2006); without it leave out the baseline";
+        return Err(Error::parameter("--scale", "not given", accepted));
+    }
+    disparity(image, given, given.scale.unwrap_or(1.0))
+}
+
+/// `1/z = -0.0030711016 r + 3.3309495161` (OpenKinect, S. Burrus' calibration), which reaches
+/// infinity behind 1084.
+fn kinect_raw(image: &mut Image, given: &Given) -> Result<Meaning> {
+    no_scale("kinect-raw", given)?;
+    let values = sixteen_bits("kinect-raw", image)?;
+    if let Some(&largest) = values.iter().max()
+        && largest > 2047
+    {
+        if values.iter().any(|value| value.swap_bytes() > 2047) {
+            return Err(Error::parameter("--encoding", "kinect-raw", format!("values up to 2047, the map has {largest}")));
+        }
+        values.iter_mut().for_each(|value| *value = value.swap_bytes());
+        image.warnings.push("the bytes were swapped: only so are all values at most 2047".to_string());
+    }
+    let measure = Measure::InverseDepth { slope: -0.0030711016, offset: 3.3309495161 };
+    Ok(Meaning { measure, valid_range: Some((1.0, 1084.0)) })
+}
+
+/// 16-bit millimetres behind a packing of bits.
+fn unpacked(name: &'static str, image: &mut Image, given: &Given, unpack: fn(u16) -> u16) -> Result<Meaning> {
+    no_scale(name, given)?;
+    sixteen_bits(name, image)?.iter_mut().for_each(|value| *value = unpack(*value));
+    depth(image, 1000.0)
+}
+
+fn sixteen_bits<'a>(name: &'static str, image: &'a mut Image) -> Result<&'a mut Vec<u16>> {
+    match &mut image.pixels {
+        Pixels::U16(values) => Ok(values),
+        _ => Err(Error::parameter("--encoding", name, format!("a map of 16-bit integers, this one is {}", image.sample))),
+    }
+}
+
+fn no_scale(name: &str, given: &Given) -> Result<()> {
+    match given.scale {
+        None => Ok(()),
+        Some(scale) => Err(Error::parameter("--scale", scale, format!("none: the encoding `{name}` fixes the unit"))),
+    }
+}
+
+fn positive_scale(scale: f64) -> Result<f64> {
+    if scale > 0.0 && scale.is_finite() && scale.recip().is_finite() {
+        Ok(scale)
+    } else {
+        Err(Error::parameter("--scale", scale, "a finite number above 0"))
+    }
+}
+
+fn float_range(image: &Image, lowest: f64) -> Option<(f64, f64)> {
+    matches!(image.pixels, Pixels::F32(_)).then_some((lowest, f64::from(f32::MAX)))
+}

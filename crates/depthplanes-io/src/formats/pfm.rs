@@ -1,0 +1,54 @@
+//! Portable float maps, as Middlebury and ETH3D publish disparity.
+//!
+//! In: `Pf` (grey) or `PF` (colour, only with equal channels), either byte order, rows bottom-up.
+//! Out: `f32` values, top row first. The header's scale gives the byte order by its sign; its size
+//! is ignored, as every loader of these data sets does, with a warning unless it is 1.
+
+use super::bytes::header_words;
+use super::samples::{Sample, pixels, single_channel};
+use super::{DecodeOptions, Format, Image};
+use crate::error::{Error, Result};
+use crate::frame::Pixels;
+
+pub(super) const FORMAT: Format = Format {
+    name: "pfm",
+    about: "portable float map, both byte orders",
+    extensions: &["pfm"],
+    sniff: |bytes| bytes.len() > 2 && matches!(&bytes[..2], b"Pf" | b"PF") && bytes[2].is_ascii_whitespace(),
+    decode,
+};
+
+fn unreadable(wrong: impl Into<String>) -> Error {
+    let accepted = "Pf or PF, width, height, a scale other than 0, then all the 32-bit floats";
+    Error::Unreadable { format: "pfm", wrong: wrong.into(), accepted }
+}
+
+fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
+    let channels = if bytes.get(1) == Some(&b'F') { 3 } else { 1 };
+    let body = bytes.get(2..).unwrap_or(&[]);
+    let (words, data) = header_words::<3>(body).ok_or_else(|| unreadable("the header is cut off"))?;
+    let number = |word: &str| word.parse::<u64>().map_err(|_| unreadable(format!("`{word}` in the header")));
+    let (width, height) = (number(words[0])?, number(words[1])?);
+    let scale: f64 = words[2].parse().map_err(|_| unreadable(format!("the scale is `{}`", words[2])))?;
+    if scale == 0.0 || !scale.is_finite() {
+        return Err(unreadable(format!("the scale is {scale}")));
+    }
+    let samples = options.limits.area("pfm", width, height, 4 * channels)? * channels;
+    let data = data.get(..samples * 4).ok_or_else(|| {
+        unreadable(format!("{width} x {height} pixels need {} bytes, {} are there", samples * 4, data.len()))
+    })?;
+    let mut warnings = Vec::new();
+    if scale.abs() != 1.0 {
+        warnings.push(format!("the header's scale {scale} gives the byte order only; values are as stored"));
+    }
+    let Pixels::F32(values) = pixels(data, Sample::F32, scale > 0.0, &mut warnings) else {
+        unreachable!("floats stay floats");
+    };
+    let mut values = single_channel("pfm", values, channels, false, &mut warnings)?;
+    let (width, height) = (width as usize, height as usize);
+    for v in 0..height / 2 {
+        let (top, bottom) = values.split_at_mut((height - 1 - v) * width);
+        top[v * width..][..width].swap_with_slice(&mut bottom[..width]);
+    }
+    Ok(Image { width, height, pixels: Pixels::F32(values), sample: "float32", warnings })
+}

@@ -1,0 +1,76 @@
+//! PNG, 8 and 16 bits: grey, grey with opacity, and colour or palette whose channels are equal.
+//!
+//! In: a PNG file. Out: `u8` or `u16` values as stored; 1, 2 and 4-bit grey is widened to 8 bits.
+//! 16-bit samples are decoded into the frame's own buffer and their bytes swapped in place.
+
+use std::io::Cursor;
+
+use png::{BitDepth, ColorType, Decoder, DecodingError, Reader, Transformations};
+
+use super::samples::single_channel;
+use super::{DecodeOptions, Format, Image};
+use crate::error::{Error, Result};
+use crate::frame::Pixels;
+
+pub(super) const FORMAT: Format = Format {
+    name: "png",
+    about: "PNG, 8 or 16 bits, grey (or equal channels)",
+    extensions: &["png"],
+    sniff: |bytes| bytes.starts_with(&SIGNATURE),
+    decode,
+};
+
+const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
+const ACCEPTED: &str = "a whole PNG file with one depth map";
+/// Deflate packs no more than 1032 bytes into one, so a longer promise cannot be kept.
+const BEST_RATIO: usize = 1032;
+
+fn unreadable(error: DecodingError) -> Error {
+    Error::Unreadable { format: "png", wrong: error.to_string(), accepted: ACCEPTED }
+}
+
+fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
+    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), png::Limits { bytes: options.limits.max_bytes });
+    decoder.set_transformations(Transformations::EXPAND);
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
+    let mut reader = decoder.read_info().map_err(unreadable)?;
+    let (width, height) = (reader.info().width, reader.info().height);
+    let stored_bits = reader.info().bit_depth as u8;
+    let palette = reader.info().color_type == ColorType::Indexed;
+    let (color, depth) = reader.output_color_type();
+    let sample_bytes = if depth == BitDepth::Sixteen { 2 } else { 1 };
+    let channels = color.samples();
+    let area = options.limits.area("png", width.into(), height.into(), channels * sample_bytes)?;
+    let samples = area * channels;
+    let least_raw = area * usize::from(stored_bits) / 8;
+    if least_raw > bytes.len().saturating_mul(BEST_RATIO) {
+        let wrong = format!("{width} x {height} pixels cannot come out of {} bytes", bytes.len());
+        return Err(Error::Unreadable { format: "png", wrong, accepted: ACCEPTED });
+    }
+    let mut warnings = Vec::new();
+    if stored_bits < 8 && !palette {
+        warnings.push(format!("{stored_bits}-bit grey is widened to 8 bits"));
+    }
+    let alpha = matches!(color, ColorType::GrayscaleAlpha | ColorType::Rgba);
+    let pixels = if sample_bytes == 2 {
+        let samples = read_u16(&mut reader, samples)?;
+        Pixels::U16(single_channel("png", samples, channels, alpha, &mut warnings)?)
+    } else {
+        let mut buffer = vec![0u8; samples];
+        reader.next_frame(&mut buffer).map_err(unreadable)?;
+        Pixels::U8(single_channel("png", buffer, channels, alpha, &mut warnings)?)
+    };
+    let sample = if sample_bytes == 2 { "uint16" } else { "uint8" };
+    Ok(Image { width: width as usize, height: height as usize, pixels, sample, warnings })
+}
+
+/// PNG stores 16-bit samples big-endian.
+fn read_u16(reader: &mut Reader<Cursor<&[u8]>>, samples: usize) -> Result<Vec<u16>> {
+    let mut buffer = vec![0u16; samples];
+    reader.next_frame(bytemuck::cast_slice_mut(&mut buffer)).map_err(unreadable)?;
+    for value in &mut buffer {
+        *value = u16::from_be(*value);
+    }
+    Ok(buffer)
+}

@@ -1,0 +1,170 @@
+//! One map from a file or from bytes: format, then encoding, then what the user knows better.
+//!
+//! What the user states goes before the preset, the preset before the guess.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use depthplanes::{Intrinsics, Sensor};
+
+use crate::camera_file::CameraFile;
+use crate::encoding::{self, Given, Stereo};
+use crate::error::{Error, Result};
+use crate::formats::{self, DecodeOptions, Image};
+use crate::frame::{Frame, Pixels};
+use crate::inspect;
+use crate::presets::{self, SensorPreset};
+
+/// What the user says of a map beside its bytes. The default says nothing.
+///
+/// ```
+/// use depthplanes_io::ReadOptions;
+/// let pgm = b"P2 3 1 65535 5000 0 10000";
+/// let options = ReadOptions { encoding: Some("tum".into()), ..Default::default() };
+/// let frame = depthplanes_io::decode(pgm, "doc.pgm", &options)?;
+/// assert_eq!(frame.sensor.measure.depth_m(10_000.0), Some(2.0));
+/// # Ok::<(), depthplanes_io::Error>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ReadOptions {
+    /// Limits, member of an archive, size of headerless samples.
+    pub decode: DecodeOptions,
+    /// A row of [`presets::SENSOR_PRESETS`].
+    pub preset: Option<String>,
+    /// A row of [`encoding::ENCODINGS`].
+    pub encoding: Option<String>,
+    /// The encoding's scale; what it counts is [`encoding::Encoding::scale`].
+    pub scale: Option<f64>,
+    /// The numbers are disparities; settles the guess when no encoding is stated.
+    pub disparity: bool,
+    /// Swap the two bytes of 16-bit samples.
+    pub swap_bytes: bool,
+    /// A value that means "missing" beside 0, map units.
+    pub missing: Option<f64>,
+    /// Smallest and largest valid value, map units.
+    pub valid_range: Option<(f64, f64)>,
+    /// The camera.
+    pub intrinsics: Option<Intrinsics>,
+    /// Columns and rows that the intrinsics are for, if known; maps of another size are refused.
+    pub camera_size: Option<(usize, usize)>,
+    /// The stereo rig, for disparities; ignored for depth.
+    pub stereo: Option<Stereo>,
+}
+
+impl ReadOptions {
+    /// The same with everything that a camera file states.
+    pub fn camera(mut self, camera: &CameraFile) -> Self {
+        self.intrinsics = Some(camera.intrinsics);
+        self.camera_size = camera.size;
+        self.stereo = camera.stereo.or(self.stereo);
+        self
+    }
+}
+
+/// Reads one map from a file.
+///
+/// # Errors
+/// [`Error::Io`], and those of [`decode`].
+pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Frame> {
+    let path = path.as_ref();
+    let name = path.display().to_string();
+    let bytes = read_bytes(path, options.decode.limits.max_bytes)?;
+    decode(&bytes, &name, options)
+}
+
+/// The bytes of a file.
+///
+/// # Errors
+/// [`Error::Io`]; [`Error::Limit`] for more than `most` bytes, before they are read.
+pub(crate) fn read_bytes(path: &Path, most: usize) -> Result<Vec<u8>> {
+    let name = path.display().to_string();
+    let io = |source| Error::Io { path: name.clone(), source };
+    let file = File::open(path).map_err(io)?;
+    let length = file.metadata().map_err(io)?.len();
+    let too_long = |given| Error::Limit { what: "size of the file in bytes", given, limit: most as u64 }.in_file(&name);
+    if length > most as u64 {
+        return Err(too_long(length));
+    }
+    let mut bytes = Vec::with_capacity(length as usize + 1);
+    file.take(most as u64 + 1).read_to_end(&mut bytes).map_err(io)?;
+    if bytes.len() > most {
+        return Err(too_long(bytes.len() as u64));
+    }
+    Ok(bytes)
+}
+
+/// Reads one map from bytes; `name` is for messages only.
+///
+/// # Errors
+/// [`Error::In`] around [`Error::Unreadable`], [`Error::Limit`], [`Error::Parameter`] or
+/// [`Error::Library`]; never a panic, whatever the bytes.
+pub fn decode(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Frame> {
+    decode_unnamed(bytes, options).map_err(|error| error.in_file(name))
+}
+
+fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
+    let preset = options.preset.as_deref().map(presets::by_name).transpose()?;
+    let (mut image, format) = formats::decode(bytes, &options.decode)?;
+    if options.swap_bytes {
+        swap_bytes(&mut image)?;
+    }
+    let stated = options.encoding.as_deref().or(preset.map(|preset| preset.encoding));
+    let encoding = match stated {
+        Some(name) => encoding::by_name(name)?,
+        None => encoding::likely(&image.pixels, format.name, options.disparity || options.stereo.is_some()).0,
+    };
+    if options.disparity && !encoding.disparity {
+        let accepted = "an encoding of disparity (disparity, kitti, middlebury), or leave --disparity out";
+        return Err(Error::parameter("--encoding", encoding.name, accepted));
+    }
+    let meaning = (encoding.apply)(&mut image, &Given { scale: options.scale, stereo: options.stereo })?;
+    let intrinsics = camera(options, preset, &mut image)?;
+    let mut frame = Frame {
+        width: image.width,
+        height: image.height,
+        pixels: image.pixels,
+        missing: options.missing.or(preset.and_then(|preset| preset.missing)).or(encoding.missing),
+        valid_range: options.valid_range.or(meaning.valid_range),
+        sensor: Sensor { measure: meaning.measure, intrinsics },
+        format: format.name,
+        encoding: encoding.name,
+        warnings: image.warnings,
+    };
+    frame.view()?; // What the library would refuse later is refused here, with the file's name.
+    if stated.is_none() {
+        let traps = inspect::quick_traps(&frame);
+        frame.warnings.extend(traps);
+    }
+    Ok(frame)
+}
+
+fn swap_bytes(image: &mut Image) -> Result<()> {
+    match &mut image.pixels {
+        Pixels::U16(values) => values.iter_mut().for_each(|value| *value = value.swap_bytes()),
+        _ => return Err(Error::parameter("--swap-bytes", image.sample, "maps of 16-bit integers")),
+    }
+    Ok(())
+}
+
+/// The camera for this map: the user's, or the preset's if the size is right.
+fn camera(options: &ReadOptions, preset: Option<&SensorPreset>, image: &mut Image) -> Result<Option<Intrinsics>> {
+    let size = (image.width, image.height);
+    if let Some(given) = options.intrinsics {
+        if let Some((width, height)) = options.camera_size.filter(|stated| *stated != size) {
+            let accepted = format!("the camera of this map, which has {} x {} pixels", size.0, size.1);
+            return Err(Error::parameter("camera", format_args!("for {width} x {height} pixels"), accepted));
+        }
+        let Intrinsics { fx, fy, cx, cy } = given;
+        return Ok(Some(Intrinsics::new(fx, fy, cx, cy)?));
+    }
+    match preset.and_then(|preset| preset.camera) {
+        Some((width, height, intrinsics)) if (width, height) == size => Ok(Some(intrinsics)),
+        Some((width, height, _)) => {
+            let (w, h) = size;
+            image.warnings.push(format!("the preset's camera is for {width} x {height}, not {w} x {h}: not used"));
+            Ok(None)
+        }
+        None => Ok(None),
+    }
+}

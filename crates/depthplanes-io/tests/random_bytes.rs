@@ -1,0 +1,59 @@
+//! Whatever the bytes, a reader answers: random bytes behind a valid start, and valid files with
+//! some bytes changed.
+
+mod common;
+
+use common::*;
+use depthplanes_io::formats::{DecodeOptions, FORMATS, Limits};
+use depthplanes_io::{ReadOptions, camera_file, decode, inspect};
+use proptest::prelude::*;
+
+fn options() -> ReadOptions {
+    let limits = Limits { max_pixels: 1 << 20, max_bytes: 1 << 24 };
+    ReadOptions { decode: DecodeOptions { limits, ..Default::default() }, ..Default::default() }
+}
+
+/// Reads by sniffing and by every format in turn.
+fn read_all(bytes: &[u8]) {
+    let options = options();
+    if let Ok(frame) = decode(bytes, "random", &options) {
+        assert!(frame.view().is_ok());
+        let summary = inspect::summary(&frame, 10).unwrap();
+        assert!(summary.missing >= 0.0 && summary.missing <= 1.0);
+    }
+    for format in FORMATS {
+        if let Ok(image) = (format.decode)(bytes, &options.decode) {
+            assert!(image.width * image.height <= options.decode.limits.max_pixels, "{}", format.name);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, ..Default::default() })]
+
+    #[test]
+    fn random_bytes_behind_a_valid_start(file in 0..14usize, keep in 0.0..1.0f64, tail in prop::collection::vec(any::<u8>(), 0..200)) {
+        let (_, _, valid) = &valid_files()[file];
+        let keep = (keep * valid.len() as f64) as usize;
+        read_all(&[&valid[..keep], &tail].concat());
+    }
+
+    #[test]
+    fn valid_files_with_some_bytes_changed(file in 0..64usize, changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8)) {
+        let files = valid_files();
+        let (_, _, mut bytes) = files[file % files.len()].clone();
+        for (at, value) in changes {
+            let at = at.index(bytes.len());
+            bytes[at] = value;
+        }
+        read_all(&bytes);
+    }
+
+    #[test]
+    fn camera_files_of_any_text(words in prop::collection::vec(prop_oneof![
+        Just("K:"), Just("P:"), Just("camera_matrix:"), Just("data:"), Just("["), Just("]"), Just("\n"), Just("- "), Just("1e308"),
+        Just("0"), Just("500"), Just(","), Just("nan"), Just("cam0=["), Just(";"), Just("{\"fx\":"), Just("}"), Just("-1"), Just("#"),
+    ], 0..40)) {
+        let _ = camera_file::parse(&words.concat());
+    }
+}
