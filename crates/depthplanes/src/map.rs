@@ -26,7 +26,7 @@ mod sealed {
         /// The enhancer's memory for this type.
         fn buffers(enhancer: &mut Enhancer) -> (&mut Buffers<Self>, &mut Columns);
         /// The instruction set's masks for this type.
-        fn masks<I: Isa>(row: &[Self], up: Option<&[Self]>, rule: &LinkRule<Self>, out: RowMasks<'_>);
+        fn masks<I: Isa>(row: &[Self], up: &[Self], rule: &LinkRule<Self>, out: RowMasks<'_>);
     }
 
     macro_rules! sealed {
@@ -46,7 +46,7 @@ mod sealed {
                     (&mut enhancer.$t, &mut enhancer.columns)
                 }
                 #[inline(always)]
-                fn masks<I: Isa>(row: &[Self], up: Option<&[Self]>, rule: &LinkRule<Self>, out: RowMasks<'_>) {
+                fn masks<I: Isa>(row: &[Self], up: &[Self], rule: &LinkRule<Self>, out: RowMasks<'_>) {
                     I::$masks(row, up, rule, out)
                 }
             }

@@ -4,7 +4,7 @@
 //! the label of the plane it belongs to.
 
 use crate::error::{Error, Result};
-use crate::group::{Groups, Run, SLACK};
+use crate::group::{Groups, Run, SLACK, reserve_to};
 
 /// Most planes that 16-bit labels can name.
 pub const MAX_PLANES: usize = u16::MAX as usize;
@@ -12,7 +12,7 @@ pub const MAX_PLANES: usize = u16::MAX as usize;
 /// A group that was kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kept {
-    /// The group: the index of its first run in raster order.
+    /// The group.
     pub group: u32,
     /// Its pixels.
     pub pixel_count: u32,
@@ -22,6 +22,7 @@ pub struct Kept {
 #[derive(Debug, Default)]
 pub struct Selection {
     kept: Vec<Kept>,
+    label_of_group: Vec<u16>,
     label_of_run: Vec<u16>,
 }
 
@@ -32,17 +33,17 @@ impl Selection {
     /// [`Error::TooManyPlanes`] if there are more than [`MAX_PLANES`]; nothing is selected then.
     pub fn select(&mut self, groups: &Groups, min: u32) -> Result<&[Kept]> {
         self.kept.clear();
-        self.label_of_run.clear();
-        self.label_of_run.reserve(groups.width() * groups.height() + SLACK);
-        let sizes = groups.sizes_by_first_run();
-        let found = sizes.iter().filter(|&&size| size > min).count();
+        let most_runs = groups.width() * groups.height();
+        reserve_to(&mut self.label_of_group, most_runs);
+        reserve_to(&mut self.label_of_run, most_runs + SLACK);
+        let found = groups.sizes().iter().filter(|&&size| size > min).count();
         if found > MAX_PLANES {
             return Err(Error::TooManyPlanes { found });
         }
-        let larger = (0u32..).zip(sizes).filter(|&(_, &size)| size > min);
         self.kept.reserve(MAX_PLANES);
+        let larger = (0u32..).zip(groups.sizes()).filter(|&(_, &size)| size > min);
         self.kept.extend(larger.map(|(group, &pixel_count)| Kept { group, pixel_count }));
-        // Groups are named by their first run, so equal sizes are ordered by first pixel.
+        // Groups are counted by first pixel, so equal sizes are ordered by first pixel.
         self.kept.sort_unstable_by_key(|kept| (std::cmp::Reverse(kept.pixel_count), kept.group));
         self.label_runs(groups);
         Ok(&self.kept)
@@ -58,17 +59,16 @@ impl Selection {
         }
     }
 
-    /// A group's first run comes before its others, so one forward pass hands the label on.
     fn label_runs(&mut self, groups: &Groups) {
-        let labels = &mut self.label_of_run;
+        let labels = &mut self.label_of_group;
         labels.clear();
-        labels.resize(groups.run_count() + SLACK, 0);
+        labels.resize(groups.count(), 0);
         for (label, kept) in (1..).zip(&self.kept) {
             labels[kept.group as usize] = label;
         }
-        for (run, &group) in groups.group_of_run().iter().enumerate() {
-            labels[run] = labels[group as usize];
-        }
+        self.label_of_run.clear();
+        self.label_of_run.extend(groups.group_of_run().iter().map(|&group| labels[group as usize]));
+        self.label_of_run.resize(groups.run_count() + SLACK, 0);
     }
 
     /// The kept groups; label 1 is the first.

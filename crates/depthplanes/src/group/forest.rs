@@ -21,17 +21,24 @@ pub(super) fn unite(parent: &mut [u32], a: u32, b: u32) {
     parent[a.max(b) as usize] = a.min(b);
 }
 
-/// Every run's parent becomes its root, and every root's size the pixels of its group.
-pub(super) fn flatten(parent: &mut [u32], size: &mut Vec<u32>, strips: &[Strip]) {
-    size.clear();
-    size.resize(parent.len(), 0);
-    let mut run = 0;
+/// Turns the forest into groups, in place: every run's entry becomes its group, groups being counted
+/// in the order of their first runs, and `sizes` the pixels of each group.
+///
+/// A parent comes before its children, so its group is known when theirs is asked for.
+pub(super) fn flatten(forest: &mut [u32], sizes: &mut Vec<u32>, strips: &[Strip]) {
+    sizes.clear();
+    sizes.resize(forest.len() + 1, 0);
+    let (mut groups, mut run) = (0, 0);
     for strip in strips {
         for (first, last) in strip.first_column.iter().zip(&strip.last_column) {
-            let root = parent[parent[run] as usize];
-            parent[run] = root;
-            size[root as usize] += u32::from(last - first) + 1;
+            let parent = forest[run] as usize;
+            let (is_root, group_of_parent) = (parent == run, forest[parent]);
+            let group = if is_root { groups } else { group_of_parent };
+            forest[run] = group;
+            sizes[group as usize] += u32::from(last - first) + 1;
+            groups += u32::from(is_root);
             run += 1;
         }
     }
+    sizes.truncate(groups as usize);
 }

@@ -7,8 +7,8 @@
 //! answer is the same for every kernel and any number of threads, since components do not depend on
 //! the order of unions and groups are numbered by their first pixel.
 //!
-//! How: [`strip::scan`] turns a strip of rows into runs and a forest of them, [`stitch`] joins the
-//! strips, [`forest::flatten`] gives every run its root and every root its size.
+//! How: `strip::scan` turns a strip of rows into runs and a forest of them, `strip::stitch` joins the
+//! strips, `forest::flatten` numbers the groups and adds up their sizes.
 
 mod forest;
 mod kernels;
@@ -25,11 +25,11 @@ use strip::Strip;
 /// When two neighbours are linked: both valid, values at most `theta` apart.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkRule<T> {
-    /// Which values count.
-    pub validity: Validity<T>,
+    /// Which values count. For integers `low` is at least 1, so that the range rules out 0.
+    pub(crate) validity: Validity<T>,
     /// Largest difference. Integer maps: theta rounded down, which links the same pixels; `f32`
     /// maps: the nearest `f32`.
-    pub theta: T,
+    pub(crate) theta: T,
 }
 
 impl<T: Pixel> LinkRule<T> {
@@ -37,7 +37,10 @@ impl<T: Pixel> LinkRule<T> {
     ///
     /// # Errors
     /// [`Error::Parameter`] unless theta is a number of at least 0.
-    pub fn new(validity: Validity<T>, theta: f64) -> Result<Self> {
+    pub fn new(mut validity: Validity<T>, theta: f64) -> Result<Self> {
+        if T::IS_INTEGER && validity.low == T::ZERO {
+            validity.low = T::from_f64(1.0);
+        }
         if theta >= 0.0 {
             Ok(LinkRule { validity, theta: T::floor_from(theta) })
         } else {
@@ -45,10 +48,10 @@ impl<T: Pixel> LinkRule<T> {
         }
     }
 
-    /// Whether neighbours `a` and `b` are linked.
+    /// Whether two values are at most theta apart.
     #[inline(always)]
-    pub fn links(&self, a: T, b: T) -> bool {
-        self.validity.holds(a) & self.validity.holds(b) & (a.distance(b) <= self.theta)
+    pub(crate) fn close(&self, a: T, b: T) -> bool {
+        a.distance(b) <= self.theta
     }
 }
 
@@ -61,7 +64,7 @@ pub struct Run {
     pub u_first: u32,
     /// Last column, inclusive.
     pub u_last: u32,
-    /// The group it belongs to: the index of the group's first run in raster order.
+    /// The group it belongs to, counted from 0 in raster order of first pixels.
     pub group: u32,
 }
 
@@ -85,8 +88,8 @@ impl Grouper {
 
     /// A grouper on a certain kernel of [`kernels`].
     pub fn with_kernel(kernel: &'static Kernel) -> Self {
-        let (strips, root, size) = Default::default();
-        Grouper { groups: Groups { kernel, width: 0, height: 0, strips, root, size } }
+        let (strips, group_of_run, sizes) = Default::default();
+        Grouper { groups: Groups { kernel, width: 0, height: 0, strips, group_of_run, sizes } }
     }
 
     /// Groups one map on `threads` threads (0 counts as 1; one without the feature `parallel`).
@@ -109,7 +112,7 @@ impl Grouper {
         groups.prepare(map, threads);
         groups.scan_strips(map, rule);
         groups.join_strips(map, rule);
-        forest::flatten(&mut groups.root, &mut groups.size, &groups.strips);
+        forest::flatten(&mut groups.group_of_run, &mut groups.sizes, &groups.strips);
         groups
     }
 
@@ -143,10 +146,10 @@ pub struct Groups {
     width: usize,
     height: usize,
     strips: Vec<Strip>,
-    /// For each run, in raster order, the first run of its group.
-    root: Vec<u32>,
-    /// For each run, the pixels of its group if it is the group's first run, else 0.
-    size: Vec<u32>,
+    /// For each run, in raster order, its parent in the forest, and after flattening its group.
+    group_of_run: Vec<u32>,
+    /// The pixels of each group.
+    sizes: Vec<u32>,
 }
 
 impl Groups {
@@ -160,8 +163,8 @@ impl Groups {
             strip.prepare(self.width, rows);
         }
         let most_runs = self.width * self.height;
-        reserve_to(&mut self.root, most_runs);
-        reserve_to(&mut self.size, most_runs);
+        reserve_to(&mut self.group_of_run, most_runs);
+        reserve_to(&mut self.sizes, most_runs + 1);
     }
 
     /// Scans each strip, side by side where threads are to be had.
@@ -173,18 +176,18 @@ impl Groups {
     /// One forest from the strips' forests: appended, then united along the borders.
     fn join_strips<T: Pixel>(&mut self, map: &DepthView<'_, T>, rule: &LinkRule<T>) {
         if let [only] = &mut self.strips[..] {
-            std::mem::swap(&mut self.root, &mut only.parent);
+            std::mem::swap(&mut self.group_of_run, &mut only.parent);
             return;
         }
-        self.root.clear();
+        self.group_of_run.clear();
         for strip in &mut self.strips {
-            let offset = self.root.len() as u32;
+            let offset = self.group_of_run.len() as u32;
             strip.first_run = offset;
-            self.root.extend(strip.parent.iter().map(|parent| parent + offset));
+            self.group_of_run.extend(strip.parent.iter().map(|parent| parent + offset));
         }
         for k in 1..self.strips.len() {
             let (above, below) = self.strips.split_at_mut(k);
-            self.kernel.stitch(map, rule, &above[k - 1], &mut below[0], &mut self.root);
+            self.kernel.stitch(map, rule, &above[k - 1], &mut below[0], &mut self.group_of_run);
         }
     }
 
@@ -205,28 +208,27 @@ impl Groups {
 
     /// How many groups there are.
     pub fn count(&self) -> usize {
-        self.size.iter().filter(|&&size| size > 0).count()
+        self.sizes.len()
     }
 
     /// How many runs there are.
     pub fn run_count(&self) -> usize {
-        self.root.len()
+        self.group_of_run.len()
     }
 
     /// All runs in raster order.
     pub fn runs(&self) -> impl Iterator<Item = Run> + '_ {
-        self.strips.iter().flat_map(|strip| strip.runs(&self.root))
+        self.strips.iter().flat_map(|strip| strip.runs(&self.group_of_run))
     }
 
-    /// For each run in raster order the pixels of the group that begins with it, or 0 if the run
-    /// begins none.
-    pub(crate) fn sizes_by_first_run(&self) -> &[u32] {
-        &self.size
+    /// The pixels of each group, in raster order of the groups' first pixels.
+    pub fn sizes(&self) -> &[u32] {
+        &self.sizes
     }
 
-    /// For each run in raster order the group it belongs to.
-    pub(crate) fn group_of_run(&self) -> &[u32] {
-        &self.root
+    /// For each run in raster order its group.
+    pub fn group_of_run(&self) -> &[u32] {
+        &self.group_of_run
     }
 
     /// Writes an image, `width * height`, in which every pixel of run i is `label_of_run[i]` and
@@ -253,7 +255,7 @@ impl Groups {
 
 /// Makes room for `capacity` elements once and for all. Pages that are never written stay unmapped,
 /// so the worst case costs address space, not memory.
-fn reserve_to<T>(vec: &mut Vec<T>, capacity: usize) {
+pub(crate) fn reserve_to<T>(vec: &mut Vec<T>, capacity: usize) {
     vec.clear();
     vec.reserve(capacity);
 }

@@ -9,14 +9,14 @@ use super::{LinkRule, Run, forest, reserve_to};
 use crate::map::{DepthView, Pixel};
 use std::ops::Range;
 
-/// The masks of one row, one bit a pixel.
+/// The masks of one row, one bit a pixel, as an instruction set computes them.
 pub struct RowMasks<'a> {
     /// Pixels that are valid.
     pub valid: &'a mut [u64],
-    /// Pixels linked to their left neighbour.
-    pub left: &'a mut [u64],
-    /// Pixels linked to the neighbour above.
-    pub above: &'a mut [u64],
+    /// Pixels within theta of their left neighbour, valid or not; nothing certain of column 0.
+    pub close_left: &'a mut [u64],
+    /// Pixels within theta of the neighbour above, valid or not.
+    pub close_up: &'a mut [u64],
 }
 
 /// What a strip knows after [`scan`].
@@ -102,8 +102,7 @@ impl Strip {
 pub(super) fn scan<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>, strip: &mut Strip) {
     for row in 0..strip.rows.len() {
         let v = strip.rows.start + row;
-        let up = (row > 0).then(|| map.row(v - 1));
-        row_masks::<I, T>(map.row(v), up, rule, strip, row);
+        row_masks::<I, T>(map, v, rule, strip);
         row_runs::<I>(strip, row);
         if row > 0 {
             join_row_above(strip, row);
@@ -115,15 +114,17 @@ pub(super) fn scan<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>,
     strip.row_first_run.push(strip.parent.len() as u32);
 }
 
+/// Masks of row v of the map, in `valid` and the scratch's `left` and `above`. The links lack the
+/// validity of the other side yet. The map's first row stands in for the row above it.
 #[inline(always)]
-fn row_masks<I: Isa, T: Pixel>(row: &[T], up: Option<&[T]>, rule: &LinkRule<T>, strip: &mut Strip, at: usize) {
+fn row_masks<I: Isa, T: Pixel>(map: &DepthView<'_, T>, v: usize, rule: &LinkRule<T>, strip: &mut Strip) {
     let words = strip.words;
     let masks = RowMasks {
-        valid: &mut strip.valid[at * words..][..words],
-        left: &mut strip.scratch.left[..words],
-        above: &mut strip.scratch.above[..words],
+        valid: &mut strip.valid[(v - strip.rows.start) * words..][..words],
+        close_left: &mut strip.scratch.left[..words],
+        close_up: &mut strip.scratch.above[..words],
     };
-    T::masks::<I>(row, up, rule, masks);
+    T::masks::<I>(map.row(v), map.row(v.saturating_sub(1)), rule, masks);
 }
 
 /// Lists the runs of a row: a run starts at a valid pixel that is not linked to its left, and ends
@@ -134,18 +135,23 @@ fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
     let valid = &strip.valid[row * words..][..words];
     let starts = &mut strip.starts[row * words..][..words];
     let scratch = &mut strip.scratch;
-    let left = &scratch.left[..words + 1];
+    let left = &mut scratch.left[..words + 1];
     let ends = &mut scratch.ends[..words];
     let before = &mut scratch.runs_before[..words];
     let first = strip.parent.len() as u32;
-    let mut runs = first;
+    let (mut runs, mut pixels, mut valid_left) = (first, 0, 0);
     for w in 0..words {
+        left[w] &= valid[w] & (valid[w] << 1 | valid_left);
+        valid_left = valid[w] >> 63;
         starts[w] = valid[w] & !left[w];
-        ends[w] = valid[w] & !(left[w] >> 1 | left[w + 1] << 63);
         before[w] = runs;
         runs += starts[w].count_ones();
-        strip.valid_pixels += valid[w].count_ones() as usize;
+        pixels += valid[w].count_ones();
     }
+    for w in 0..words {
+        ends[w] = valid[w] & !(left[w] >> 1 | left[w + 1] << 63);
+    }
+    strip.valid_pixels += pixels as usize;
     strip.row_first_run.push(first);
     strip.parent.extend(first..runs);
     I::positions(starts, &mut strip.first_column);
@@ -165,12 +171,14 @@ fn join_row_above(strip: &mut Strip, row: usize) {
     let left = &scratch.left[..words];
     let left_above = &scratch.left_of_row_above[..words];
     let above = &scratch.above[..words];
+    let valid = &strip.valid[row * words..][..words];
+    let valid_above = &strip.valid[(row - 1) * words..][..words];
     let before = &scratch.runs_before[..words];
     let before_above = &scratch.runs_before_in_row_above[..words];
     let parent = &mut strip.parent[..];
     let mut contacts = Contacts::default();
     for w in 0..words {
-        let (mut first, mut later) = contacts.next(above[w], left[w], left_above[w]);
+        let (mut first, mut later) = contacts.next(above[w] & valid[w] & valid_above[w], left[w], left_above[w]);
         while first != 0 {
             let (here, there) = runs_at(first, starts[w], before[w], starts_above[w], before_above[w]);
             parent[here as usize] = parent[there as usize];
@@ -227,13 +235,14 @@ pub(super) fn stitch<I: Isa, T: Pixel>(
     parent: &mut [u32],
 ) {
     let v = lower.rows.start;
-    row_masks::<I, T>(map.row(v), Some(map.row(v - 1)), rule, lower, 0);
+    row_masks::<I, T>(map, v, rule, lower);
     let last_row = upper.rows.len() - 1;
     let starts_above = &upper.starts[last_row * upper.words..];
+    let valid_above = &upper.valid[last_row * upper.words..];
     let mut before = lower.first_run;
     let mut before_above = upper.first_run + upper.row_first_run[last_row];
     for w in 0..lower.words {
-        let mut contact = lower.scratch.above[w];
+        let mut contact = lower.scratch.above[w] & lower.valid[w] & valid_above[w];
         while contact != 0 {
             let (here, there) = runs_at(contact, lower.starts[w], before, starts_above[w], before_above);
             forest::unite(parent, here, there);

@@ -1,6 +1,6 @@
 //! AVX-512: comparisons give bit masks directly, `vpcompressw` lists positions, `vpermw` paints.
 
-use super::{Isa, RowMasks, SLACK, kernel};
+use super::{Isa, RowMasks, SLACK, kernel, words};
 use crate::group::LinkRule;
 use std::arch::x86_64::*;
 
@@ -18,138 +18,67 @@ kernel!("avx512", Avx512, "avx512f,avx512bw,avx512vl,avx512vbmi2,avx512bitalg,bm
         && is_x86_feature_detected!("lzcnt")
 });
 
-/// The lanes of a block of `lanes` that lie within the `rest` pixels of a row.
-#[inline(always)]
-fn lanes_within(rest: usize, lanes: usize) -> u64 {
-    u64::MAX >> (64 - rest.min(lanes))
-}
-
-/// One pixel type: how many lanes, how it is loaded, and when a lane is valid or within theta.
+/// One pixel type: its lanes, and the masks of one vector that say which lanes are valid and which
+/// are within theta of each other.
 macro_rules! masks {
-    ($name:ident, $t:ty, $lanes:literal, $mask:ty, $vector:ty, $load:path, $set:path,
-     |$a:ident, $b:ident, $rule:ident| $valid:expr, $close:expr) => {
+    ($name:ident, $t:ty, $lanes:literal, $load:path, $set:path,
+     |$a:ident, $b:ident, $zero:ident, $sentinel:ident, $low:ident, $high:ident, $theta:ident| $valid:expr, $close:expr) => {
         #[target_feature(enable = "avx512f,avx512bw,avx512vl,bmi1,bmi2")]
-        fn $name(row: &[$t], up: Option<&[$t]>, rule: &LinkRule<$t>, out: RowMasks<'_>) {
-            struct Rule {
-                low: $vector,
-                high: $vector,
-                sentinel: $vector,
-                zero: $vector,
-                theta: $vector,
-            }
+        fn $name(row: &[$t], up: &[$t], rule: &LinkRule<$t>, out: RowMasks<'_>) {
             let v = &rule.validity;
-            let $rule = Rule {
-                low: $set(v.low as _),
-                high: $set(v.high as _),
-                sentinel: $set(v.sentinel as _),
-                zero: $set(0 as _),
-                theta: $set(rule.theta as _),
+            let [$zero, $sentinel, $low, $high, $theta] =
+                [0 as $t, v.sentinel, v.low, v.high, rule.theta].map(|x| $set(x as _));
+            let valid = |here: *const $t| {
+                (0..64).step_by($lanes).fold(0u64, |word, lane| {
+                    // SAFETY: `words` passes pointers to 64 pixels.
+                    let $a = unsafe { $load(here.add(lane) as *const _) };
+                    word | ($valid as u64) << lane
+                })
             };
-            let mut left_valid = 0u64; // validity of the pixel before the word, in bit 0
-            for w in 0..row.len().div_ceil(64) {
-                let (mut valid, mut close_left, mut close_up) = (0u64, 0u64, 0u64);
-                for block in (0..64).step_by($lanes) {
-                    let at = w * 64 + block;
-                    if at >= row.len() {
-                        break;
-                    }
-                    let within = lanes_within(row.len() - at, $lanes);
-                    let not_first = if at == 0 { within & !1 } else { within };
-                    // SAFETY: a masked load touches only the lanes of its mask: pixels `at..at + popcount(within)`
-                    // of the row, the same moved by one to the left without column 0, and the row above, which
-                    // has the same length.
-                    let ($a, left) = unsafe {
-                        (
-                            $load(within as $mask, row.as_ptr().add(at) as *const _),
-                            $load(not_first as $mask, row.as_ptr().wrapping_add(at).wrapping_sub(1) as *const _),
-                        )
-                    };
-                    valid |= ($valid as u64 & within) << block;
-                    close_left |= {
-                        let $b = left;
-                        $close as u64 & not_first
-                    } << block;
-                    if let Some(up) = up {
-                        assert!(up.len() == row.len());
-                        // SAFETY: as above.
-                        let $b = unsafe { $load(within as $mask, up.as_ptr().add(at) as *const _) };
-                        // The pixel above is valid where it is; `close` alone does not say so.
-                        close_up |= ($close as u64
-                            & {
-                                let $a = $b;
-                                $valid as u64
-                            }
-                            & within)
-                            << block;
-                    }
-                }
-                out.valid[w] = valid;
-                out.left[w] = close_left & valid & (valid << 1 | left_valid);
-                out.above[w] = close_up & valid;
-                left_valid = valid >> 63;
-            }
+            let close = |here: *const $t, there: *const $t| {
+                (0..64).step_by($lanes).fold(0u64, |word, lane| {
+                    // SAFETY: as above.
+                    let ($a, $b) = unsafe { ($load(here.add(lane) as *const _), $load(there.add(lane) as *const _)) };
+                    word | ($close as u64) << lane
+                })
+            };
+            // SAFETY: both read 64 pixels at each pointer.
+            unsafe { words(row, up, out, valid, close) }
         }
     };
 }
 
-masks!(
-    masks_u8,
-    u8,
-    64,
-    __mmask64,
-    __m512i,
-    _mm512_maskz_loadu_epi8,
-    _mm512_set1_epi8,
-    |a, b, rule| _mm512_cmpneq_epi8_mask(a, rule.zero)
-        & _mm512_cmpneq_epi8_mask(a, rule.sentinel)
-        & _mm512_cmpge_epu8_mask(a, rule.low)
-        & _mm512_cmple_epu8_mask(a, rule.high),
-    _mm512_cmple_epu8_mask(_mm512_or_si512(_mm512_subs_epu8(a, b), _mm512_subs_epu8(b, a)), rule.theta)
-);
+masks!(masks_u8, u8, 64, _mm512_loadu_si512, _mm512_set1_epi8,
+    |a, b, _zero, sentinel, low, high, theta|
+    _mm512_mask_cmpneq_epi8_mask(
+        _mm512_cmpeq_epi8_mask(a, _mm512_min_epu8(_mm512_max_epu8(a, low), high)), a, sentinel),
+    _mm512_cmple_epu8_mask(_mm512_sub_epi8(_mm512_max_epu8(a, b), _mm512_min_epu8(a, b)), theta));
 
-masks!(
-    masks_u16,
-    u16,
-    32,
-    __mmask32,
-    __m512i,
-    _mm512_maskz_loadu_epi16,
-    _mm512_set1_epi16,
-    |a, b, rule| _mm512_cmpneq_epi16_mask(a, rule.zero)
-        & _mm512_cmpneq_epi16_mask(a, rule.sentinel)
-        & _mm512_cmpge_epu16_mask(a, rule.low)
-        & _mm512_cmple_epu16_mask(a, rule.high),
-    _mm512_cmple_epu16_mask(_mm512_or_si512(_mm512_subs_epu16(a, b), _mm512_subs_epu16(b, a)), rule.theta)
-);
+masks!(masks_u16, u16, 32, _mm512_loadu_si512, _mm512_set1_epi16,
+    |a, b, _zero, sentinel, low, high, theta|
+    _mm512_mask_cmpneq_epi16_mask(
+        _mm512_cmpeq_epi16_mask(a, _mm512_min_epu16(_mm512_max_epu16(a, low), high)), a, sentinel),
+    _mm512_cmple_epu16_mask(_mm512_sub_epi16(_mm512_max_epu16(a, b), _mm512_min_epu16(a, b)), theta));
 
-masks!(
-    masks_f32,
-    f32,
-    16,
-    __mmask16,
-    __m512,
-    _mm512_maskz_loadu_ps,
-    _mm512_set1_ps,
-    |a, b, rule| _mm512_cmp_ps_mask::<_CMP_NEQ_UQ>(a, rule.zero)
-        & _mm512_cmp_ps_mask::<_CMP_NEQ_UQ>(a, rule.sentinel)
-        & _mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, rule.low)
-        & _mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, rule.high),
-    _mm512_cmp_ps_mask::<_CMP_LE_OQ>(_mm512_abs_ps(_mm512_sub_ps(a, b)), rule.theta)
-);
+masks!(masks_f32, f32, 16, _mm512_loadu_ps, _mm512_set1_ps,
+    |a, b, zero, sentinel, low, high, theta|
+    _mm512_cmp_ps_mask::<_CMP_NEQ_UQ>(a, zero) & _mm512_cmp_ps_mask::<_CMP_NEQ_UQ>(a, sentinel)
+        & _mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, low) & _mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, high),
+    _mm512_cmp_ps_mask::<_CMP_LE_OQ>(_mm512_abs_ps(_mm512_sub_ps(a, b)), theta));
 
 impl Isa for Avx512 {
     #[inline(always)]
-    fn masks_u8(row: &[u8], up: Option<&[u8]>, rule: &LinkRule<u8>, out: RowMasks<'_>) {
+    fn masks_u8(row: &[u8], up: &[u8], rule: &LinkRule<u8>, out: RowMasks<'_>) {
         // SAFETY: reached only through the kernel of this file, whose features include those of the callee.
         unsafe { masks_u8(row, up, rule, out) }
     }
     #[inline(always)]
-    fn masks_u16(row: &[u16], up: Option<&[u16]>, rule: &LinkRule<u16>, out: RowMasks<'_>) {
+    fn masks_u16(row: &[u16], up: &[u16], rule: &LinkRule<u16>, out: RowMasks<'_>) {
         // SAFETY: as above.
         unsafe { masks_u16(row, up, rule, out) }
     }
     #[inline(always)]
-    fn masks_f32(row: &[f32], up: Option<&[f32]>, rule: &LinkRule<f32>, out: RowMasks<'_>) {
+    fn masks_f32(row: &[f32], up: &[f32], rule: &LinkRule<f32>, out: RowMasks<'_>) {
         // SAFETY: as above.
         unsafe { masks_f32(row, up, rule, out) }
     }
@@ -231,7 +160,7 @@ fn paint_row(valid: &[u64], starts: &[u64], label_of_run: &[u16], row: &mut [u16
         let base = _mm512_mask_set1_epi16(_mm512_set1_epi16(skipped - 1), 0xFFFF_0000, skipped - 1 + low);
         let index = _mm512_add_epi16(_mm512_popcnt_epi16(_mm512_and_si512(bits, up_to)), base);
         let at = block * 32;
-        let within = lanes_within(row.len() - at, 32) as u32;
+        let within = u32::MAX >> (32 - (row.len() - at).min(32));
         // SAFETY: `table + 32 <= runs + SLACK`, checked above; the masked store writes only pixels of the row.
         unsafe {
             let labels = _mm512_loadu_si512(label_of_run.as_ptr().add(table).cast());

@@ -9,11 +9,15 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 mod portable;
+#[cfg(target_arch = "x86_64")]
+mod words;
 
 use super::LinkRule;
 use super::strip::{RowMasks, Strip};
 use crate::map::{DepthView, Pixel};
 use std::fmt;
+#[cfg(target_arch = "x86_64")]
+use words::words;
 
 /// Elements that an operation may write or read beyond the end of a buffer's used part.
 pub(crate) const SLACK: usize = 64;
@@ -22,11 +26,11 @@ pub(crate) const SLACK: usize = 64;
 /// operations are only reached through a [`Kernel`] whose processor features were found.
 pub trait Isa {
     /// Masks of one row of 8-bit values.
-    fn masks_u8(row: &[u8], up: Option<&[u8]>, rule: &LinkRule<u8>, out: RowMasks<'_>);
+    fn masks_u8(row: &[u8], up: &[u8], rule: &LinkRule<u8>, out: RowMasks<'_>);
     /// Masks of one row of 16-bit values.
-    fn masks_u16(row: &[u16], up: Option<&[u16]>, rule: &LinkRule<u16>, out: RowMasks<'_>);
+    fn masks_u16(row: &[u16], up: &[u16], rule: &LinkRule<u16>, out: RowMasks<'_>);
     /// Masks of one row of floating-point values.
-    fn masks_f32(row: &[f32], up: Option<&[f32]>, rule: &LinkRule<f32>, out: RowMasks<'_>);
+    fn masks_f32(row: &[f32], up: &[f32], rule: &LinkRule<f32>, out: RowMasks<'_>);
 
     /// Appends the positions of the set bits to `out`, which has [`SLACK`] to spare.
     fn positions(mask: &[u64], out: &mut Vec<u16>);

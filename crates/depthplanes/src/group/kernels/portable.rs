@@ -15,13 +15,13 @@ kernel!("portable", Portable, "neon", || true);
 compile_error!("add a line with a feature of this processor's baseline");
 
 impl Isa for Portable {
-    fn masks_u8(row: &[u8], up: Option<&[u8]>, rule: &LinkRule<u8>, out: RowMasks<'_>) {
+    fn masks_u8(row: &[u8], up: &[u8], rule: &LinkRule<u8>, out: RowMasks<'_>) {
         masks(row, up, rule, out);
     }
-    fn masks_u16(row: &[u16], up: Option<&[u16]>, rule: &LinkRule<u16>, out: RowMasks<'_>) {
+    fn masks_u16(row: &[u16], up: &[u16], rule: &LinkRule<u16>, out: RowMasks<'_>) {
         masks(row, up, rule, out);
     }
-    fn masks_f32(row: &[f32], up: Option<&[f32]>, rule: &LinkRule<f32>, out: RowMasks<'_>) {
+    fn masks_f32(row: &[f32], up: &[f32], rule: &LinkRule<f32>, out: RowMasks<'_>) {
         masks(row, up, rule, out);
     }
 
@@ -63,23 +63,21 @@ impl Isa for Portable {
 
 /// Masks of a row: flags in bytes, which vectorises, then eight bytes to eight bits.
 #[inline(always)]
-fn masks<T: Pixel>(row: &[T], up: Option<&[T]>, rule: &LinkRule<T>, out: RowMasks<'_>) {
+fn masks<T: Pixel>(row: &[T], up: &[T], rule: &LinkRule<T>, out: RowMasks<'_>) {
     let mut flags = [0u8; 64];
     for (w, block) in row.chunks(64).enumerate() {
+        let first = w * 64;
         fill(&mut flags, block.iter().map(|&here| rule.validity.holds(here)));
         out.valid[w] = pack(&flags);
-        let first = w * 64;
+        fill(&mut flags, block.iter().zip(&up[first..]).map(|(&here, &up)| rule.close(here, up)));
+        out.close_up[w] = pack(&flags);
         if first == 0 {
             flags[0] = 0;
-            fill(&mut flags[1..], block[1..].iter().zip(row).map(|(&here, &left)| rule.links(here, left)));
+            fill(&mut flags[1..], block[1..].iter().zip(row).map(|(&here, &left)| rule.close(here, left)));
         } else {
-            fill(&mut flags, block.iter().zip(&row[first - 1..]).map(|(&here, &left)| rule.links(here, left)));
+            fill(&mut flags, block.iter().zip(&row[first - 1..]).map(|(&here, &left)| rule.close(here, left)));
         }
-        out.left[w] = pack(&flags);
-        out.above[w] = up.map_or(0, |up| {
-            fill(&mut flags, block.iter().zip(&up[first..]).map(|(&here, &up)| rule.links(here, up)));
-            pack(&flags)
-        });
+        out.close_left[w] = pack(&flags);
     }
 }
 

@@ -1,0 +1,92 @@
+//! Measures stages of `ngaf` on one frame, told by another program when to do what, so that it can
+//! be interleaved with rivals in one run (`benchmarks/run.py`).
+//!
+//! `bench_worker WIDTH HEIGHT TYPE THETA MIN THREADS KERNEL FILE`: FILE holds raw little-endian
+//! pixels, TYPE is u8, u16 or f32, KERNEL is a kernel's name or `best`. Commands on stdin, one a
+//! line, answered by one line: `detect` (nanoseconds of group + select + labels), `copy`
+//! (nanoseconds of a copy of the frame), `labels FILE` (writes the label image, raw u16).
+
+use depthplanes::group::{Grouper, Kernel, LinkRule, kernels};
+use depthplanes::select::Selection;
+use depthplanes::{DepthView, Pixel};
+use std::hint::black_box;
+use std::io::BufRead;
+use std::time::Instant;
+
+struct Job {
+    width: usize,
+    height: usize,
+    theta: f64,
+    min: u32,
+    threads: usize,
+    kernel: &'static Kernel,
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let [width, height, kind, theta, min, threads, kernel, file] = &args[..] else {
+        return Err("usage: bench_worker WIDTH HEIGHT TYPE THETA MIN THREADS KERNEL FILE".into());
+    };
+    let job = Job {
+        width: width.parse()?,
+        height: height.parse()?,
+        theta: theta.parse()?,
+        min: min.parse()?,
+        threads: threads.parse()?,
+        kernel: match kernel.as_str() {
+            "best" => Kernel::best(),
+            name => kernels().find(|kernel| kernel.name() == name).ok_or("no such kernel on this processor")?,
+        },
+    };
+    let bytes = std::fs::read(file)?;
+    match kind.as_str() {
+        "u8" => serve(&job, bytes),
+        "u16" => serve(&job, bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]])).collect()),
+        "f32" => serve(&job, bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()),
+        _ => Err("TYPE is u8, u16 or f32".into()),
+    }
+}
+
+fn serve<T: Pixel>(job: &Job, pixels: Vec<T>) -> Result<(), Box<dyn std::error::Error>> {
+    let view = DepthView::new(&pixels, job.width, job.height)?;
+    let rule = LinkRule::new(view.validity(), job.theta)?;
+    let mut grouper = Grouper::with_kernel(job.kernel);
+    let mut selection = Selection::default();
+    let mut labels = Vec::new();
+    let mut copy = pixels.clone();
+    for line in std::io::stdin().lock().lines() {
+        let line = line?;
+        match line.split_once(' ').unwrap_or((&line, "")) {
+            ("detect", _) => {
+                let start = Instant::now();
+                let groups = grouper.group(black_box(&view), &rule, job.threads);
+                selection.select(groups, job.min)?;
+                selection.paint(groups, &mut labels);
+                println!("{}", start.elapsed().as_nanos());
+                black_box(&labels);
+            }
+            ("copy", _) => {
+                let start = Instant::now();
+                copy.copy_from_slice(black_box(&pixels));
+                println!("{}", start.elapsed().as_nanos());
+                black_box(&copy);
+            }
+            ("stages", _) => {
+                let start = Instant::now();
+                let groups = grouper.group(black_box(&view), &rule, job.threads);
+                let grouped = start.elapsed();
+                selection.select(groups, job.min)?;
+                let selected = start.elapsed();
+                selection.paint(groups, &mut labels);
+                println!("{:?} {:?} {:?}", grouped, selected - grouped, start.elapsed() - selected);
+            }
+            ("labels", file) => {
+                let bytes: Vec<u8> = labels.iter().flat_map(|label| label.to_le_bytes()).collect();
+                std::fs::write(file, bytes)?;
+                println!("{}", job.kernel.name());
+            }
+            _ => return Err(format!("unknown command `{line}`").into()),
+        }
+    }
+    Ok(())
+}
