@@ -25,7 +25,7 @@ impl Recipe {
             let at = method.params.iter().position(|param| param.name == name);
             values[at.ok_or_else(|| lacks(method, name))?] = value;
         }
-        (method.build)(&values)?;
+        method.with(given)?;
         Ok(Recipe { method, values, threads })
     }
 

@@ -38,9 +38,11 @@ fn meaning(measure: Measure) -> String {
     }
 }
 
+/// The parameters of the method's paper, and our additions where they are used.
 fn parameters(report: &Report<'_>) -> String {
-    let pair = |(param, value): (&depthplanes::methods::Param, &f64)| format!("{} {value}", param.name);
-    let pairs: Vec<String> = report.method.params.iter().zip(report.parameters).map(pair).collect();
+    let all = report.method.params.iter().zip(report.parameters);
+    let told = all.filter(|(param, value)| param.source.is_some() || **value != param.default);
+    let pairs: Vec<String> = told.map(|(param, value)| format!("{} {value}", param.name)).collect();
     pairs.join(", ")
 }
 

@@ -155,7 +155,8 @@ fn yaml(text: &str) -> Result<CameraFile> {
 /// The numbers behind `key:`, or behind the `data:` below it: `[1, 2]` on one line or several, or
 /// a list of `- 1` lines. Not YAML in general, only what ROS writes.
 fn yaml_numbers(text: &str, key: &str) -> Option<Vec<f64>> {
-    let starts = |line: &str| line.trim_start().strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with(':'));
+    let starts =
+        |line: &str| line.trim_start().strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with(':'));
     let lines: Vec<&str> = text.lines().map(|line| line.split('#').next().unwrap_or("")).collect();
     let mut at = lines.iter().position(|line| starts(line))?;
     let mut rest = lines[at].split_once(':')?.1;
@@ -249,9 +250,24 @@ mod tests {
     #[test]
     fn what_is_no_camera_is_refused() {
         let wrong = [
-            "", "hello", "1,2,3", "0,1,2,3", "nan,1,2,3", "{", "{}", "[1,2]", "K: [1, 2]", "K:", "cam0=", "cam0=[1 2]",
-            "1 2 3 4 5 6 7 8 9", r#"{"intrinsic_matrix":[1,2,3]}"#, r#"{"cam_K":"x"}"#, "camera_matrix:\n  data:",
-            "500 1 300 0 500 200 0 0 1", "P: [1,0,0,0,0,0,0,0,0,0,1,0]",
+            "",
+            "hello",
+            "1,2,3",
+            "0,1,2,3",
+            "nan,1,2,3",
+            "{",
+            "{}",
+            "[1,2]",
+            "K: [1, 2]",
+            "K:",
+            "cam0=",
+            "cam0=[1 2]",
+            "1 2 3 4 5 6 7 8 9",
+            r#"{"intrinsic_matrix":[1,2,3]}"#,
+            r#"{"cam_K":"x"}"#,
+            "camera_matrix:\n  data:",
+            "500 1 300 0 500 200 0 0 1",
+            "P: [1,0,0,0,0,0,0,0,0,0,1,0]",
         ];
         for text in wrong {
             assert!(parse(text).is_err(), "{text}");

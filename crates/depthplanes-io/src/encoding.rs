@@ -253,7 +253,11 @@ fn kinect_raw(image: &mut Image, given: &Given) -> Result<Meaning> {
         && largest > 2047
     {
         if values.iter().any(|value| value.swap_bytes() > 2047) {
-            return Err(Error::parameter("--encoding", "kinect-raw", format!("values up to 2047, the map has {largest}")));
+            return Err(Error::parameter(
+                "--encoding",
+                "kinect-raw",
+                format!("values up to 2047, the map has {largest}"),
+            ));
         }
         values.iter_mut().for_each(|value| *value = value.swap_bytes());
         image.warnings.push("the bytes were swapped: only so are all values at most 2047".to_string());
@@ -272,7 +276,9 @@ fn unpacked(name: &'static str, image: &mut Image, given: &Given, unpack: fn(u16
 fn sixteen_bits<'a>(name: &'static str, image: &'a mut Image) -> Result<&'a mut Vec<u16>> {
     match &mut image.pixels {
         Pixels::U16(values) => Ok(values),
-        _ => Err(Error::parameter("--encoding", name, format!("a map of 16-bit integers, this one is {}", image.sample))),
+        _ => {
+            Err(Error::parameter("--encoding", name, format!("a map of 16-bit integers, this one is {}", image.sample)))
+        }
     }
 }
 

@@ -110,7 +110,8 @@ fn histogram(sorted: &[f64], bins: usize) -> Vec<Bin> {
         return Vec::new();
     };
     let edge = |bin: usize| low + (high - low) * (bin as f64 / bins as f64);
-    let below = |bin: usize| if bin == bins { sorted.len() } else { sorted.partition_point(|&value| value < edge(bin)) };
+    let below =
+        |bin: usize| if bin == bins { sorted.len() } else { sorted.partition_point(|&value| value < edge(bin)) };
     (0..bins).map(|bin| Bin { low: edge(bin), high: edge(bin + 1), count: below(bin + 1) - below(bin) }).collect()
 }
 
@@ -177,7 +178,10 @@ fn traps(frame: &Frame, probe: &Probe) -> Vec<String> {
     let all_ones = probe.all_ones as f64 / probe.pixels.max(1) as f64;
     let ones_missing = frame.missing == Some(65_535.0) || frame.valid_range.is_some_and(|(_, high)| high < 65_535.0);
     if all_ones > 0.005 && !ones_missing {
-        found.push(format!("{} of the pixels are 65535, often the value for missing: try --missing 65535", percent(all_ones)));
+        found.push(format!(
+            "{} of the pixels are 65535, often the value for missing: try --missing 65535",
+            percent(all_ones)
+        ));
     }
     if probe.missing() > 0.5 {
         let share = percent(probe.missing());
@@ -232,6 +236,9 @@ fn unit_traps(frame: &Frame, probe: &Probe, found: &mut Vec<String>) {
     if median_m > 100.0 {
         found.push(format!("the median depth would be {median_m:.0} m: try --encoding millimetre or tum"));
     } else if median_m < 0.05 {
-        found.push(format!("the median depth would be {:.1} mm: try --encoding metre, or --disparity", 1000.0 * median_m));
+        found.push(format!(
+            "the median depth would be {:.1} mm: try --encoding metre, or --disparity",
+            1000.0 * median_m
+        ));
     }
 }

@@ -41,24 +41,42 @@ impl SensorPreset {
 
 /// All presets.
 pub const SENSOR_PRESETS: &[SensorPreset] = &[
-    preset("kinect1", "millimetre", "Kinect v1, Xtion: OpenNI depth, PrimeSense nominal camera")
-        .camera(640, 480, [525.0, 525.0, 319.5, 239.5]),
-    preset("kinect1-raw", "kinect-raw", "Kinect v1: raw 11-bit disparity, S. Burrus' calibration")
-        .camera(640, 480, [594.21, 591.04, 339.31, 242.74]),
-    preset("kinect1-sdk", "kinect-sdk", "Kinect v1: Microsoft SDK 1 depth with player bits")
-        .camera(640, 480, [571.26, 571.26, 320.0, 240.0]),
-    preset("kinect2", "millimetre", "Kinect v2, time of flight, kinect2_bridge's nominal camera")
-        .camera(512, 424, [365.456, 365.456, 254.878, 205.395]),
+    preset("kinect1", "millimetre", "Kinect v1, Xtion: OpenNI depth, PrimeSense nominal camera").camera(
+        640,
+        480,
+        [525.0, 525.0, 319.5, 239.5],
+    ),
+    preset("kinect1-raw", "kinect-raw", "Kinect v1: raw 11-bit disparity, S. Burrus' calibration").camera(
+        640,
+        480,
+        [594.21, 591.04, 339.31, 242.74],
+    ),
+    preset("kinect1-sdk", "kinect-sdk", "Kinect v1: Microsoft SDK 1 depth with player bits").camera(
+        640,
+        480,
+        [571.26, 571.26, 320.0, 240.0],
+    ),
+    preset("kinect2", "millimetre", "Kinect v2, time of flight, kinect2_bridge's nominal camera").camera(
+        512,
+        424,
+        [365.456, 365.456, 254.878, 205.395],
+    ),
     preset("azure-kinect", "millimetre", "Azure Kinect; each camera has its own calibration, state it"),
     preset("realsense-d4xx", "realsense", "RealSense D400 series; read intrinsics and depth scale from the camera"),
-    preset("structure", "millimetre", "Structure Sensor, ScanNet's nominal depth camera")
-        .camera(640, 480, [577.87, 577.87, 319.5, 239.5]),
+    preset("structure", "millimetre", "Structure Sensor, ScanNet's nominal depth camera").camera(
+        640,
+        480,
+        [577.87, 577.87, 319.5, 239.5],
+    ),
     preset("tof", "millimetre", "any time-of-flight camera in millimetres"),
     preset("structured-light", "millimetre", "any structured-light camera in millimetres"),
     preset("stereo", "kitti", "any stereo program that writes 1/256 pixel"),
     preset("middlebury", "middlebury", "Middlebury and ETH3D disparity; state calib.txt"),
-    preset("synthetic", "tum", "ICL-NUIM rendered depth; its image y axis points up")
-        .camera(640, 480, [481.2, -480.0, 319.5, 239.5]),
+    preset("synthetic", "tum", "ICL-NUIM rendered depth; its image y axis points up").camera(
+        640,
+        480,
+        [481.2, -480.0, 319.5, 239.5],
+    ),
     preset("tum-fr1", "tum", "TUM RGB-D freiburg1").camera(640, 480, [517.3, 516.5, 318.6, 255.3]),
     preset("tum-fr2", "tum", "TUM RGB-D freiburg2").camera(640, 480, [520.9, 521.0, 325.1, 249.7]),
     preset("tum-fr3", "tum", "TUM RGB-D freiburg3").camera(640, 480, [535.4, 539.2, 320.1, 247.6]),

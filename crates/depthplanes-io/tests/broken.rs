@@ -54,14 +54,47 @@ fn case(name: &str, bytes: impl AsRef<[u8]>) -> Case {
 /// Text headers, and what is wrong with them.
 fn lying_texts() -> Vec<Case> {
     let texts = [
-        "P5 0 5 255\n", "P5 5 0 255\n", "P5 99999 99999 255\n", "P5 65535 65535 65535\n", "P5 7 5 0\n",
-        "P5 7 5 65536\n", "P5 7 5 70000\n", "P5 -7 5 255\n", "P5 7 5 255\nshort", "P5 x y z\n", "P5 7", "P5\n#",
-        "P5 18446744073709551615 2 255\n", "P5 18446744073709551616 2 255\n", "P2 2 2 255 1 2 3", "P2 2 2 255 1 2 3 x",
-        "P2 2 2 255 1 2 3 256", "P2 2 2 9 1 2 3 10", "P2 60000 2000 255 1 2", "P2 2 2 255 1 2 3 -4", "P3 1 1 255 1 2",
-        "P3 1 1 255 1 2 3", "P6 2 2 255\n12345", "P7 2 2 255\n1234", "P1 2 2 1 0 1 0", "P4 8 1\n\x01",
-        "Pf 0 5 -1\n", "Pf 5 5 0\n", "Pf 5 5 nan\n", "Pf 5 5 inf\n", "Pf 5 5 -1\nshort", "Pf 65535 2000 -1\n",
-        "Pf a b c\n", "PF 2 2 -1\n0123456789", "Pf 5 5", "Pf 1e3 5 -1\n", "ply\nformat ascii 1.0\n", "hello world, no map",
-        "VERSION 0.7\n", "VERSION 0.7\nDATA ascii\n", "# .PCD v0.7\nFIELDS x y\nSIZE 4 4\nTYPE F F\nWIDTH 2\nHEIGHT 2\nDATA ascii\n1 2\n",
+        "P5 0 5 255\n",
+        "P5 5 0 255\n",
+        "P5 99999 99999 255\n",
+        "P5 65535 65535 65535\n",
+        "P5 7 5 0\n",
+        "P5 7 5 65536\n",
+        "P5 7 5 70000\n",
+        "P5 -7 5 255\n",
+        "P5 7 5 255\nshort",
+        "P5 x y z\n",
+        "P5 7",
+        "P5\n#",
+        "P5 18446744073709551615 2 255\n",
+        "P5 18446744073709551616 2 255\n",
+        "P2 2 2 255 1 2 3",
+        "P2 2 2 255 1 2 3 x",
+        "P2 2 2 255 1 2 3 256",
+        "P2 2 2 9 1 2 3 10",
+        "P2 60000 2000 255 1 2",
+        "P2 2 2 255 1 2 3 -4",
+        "P3 1 1 255 1 2",
+        "P3 1 1 255 1 2 3",
+        "P6 2 2 255\n12345",
+        "P7 2 2 255\n1234",
+        "P1 2 2 1 0 1 0",
+        "P4 8 1\n\x01",
+        "Pf 0 5 -1\n",
+        "Pf 5 5 0\n",
+        "Pf 5 5 nan\n",
+        "Pf 5 5 inf\n",
+        "Pf 5 5 -1\nshort",
+        "Pf 65535 2000 -1\n",
+        "Pf a b c\n",
+        "PF 2 2 -1\n0123456789",
+        "Pf 5 5",
+        "Pf 1e3 5 -1\n",
+        "ply\nformat ascii 1.0\n",
+        "hello world, no map",
+        "VERSION 0.7\n",
+        "VERSION 0.7\nDATA ascii\n",
+        "# .PCD v0.7\nFIELDS x y\nSIZE 4 4\nTYPE F F\nWIDTH 2\nHEIGHT 2\nDATA ascii\n1 2\n",
         "# .PCD v0.7\nFIELDS z\nSIZE 4 4\nTYPE F\nWIDTH 2\nHEIGHT 2\nDATA ascii\n1\n2\n3\n4\n",
         "# .PCD v0.7\nFIELDS z\nSIZE 4\nTYPE U\nWIDTH 2\nHEIGHT 2\nDATA ascii\n1\n2\n3\n4\n",
         "# .PCD v0.7\nFIELDS z\nSIZE 2\nTYPE F\nWIDTH 2\nHEIGHT 2\nDATA ascii\n1\n2\n3\n4\n",
@@ -87,8 +120,20 @@ fn lying_arrays() -> Vec<Case> {
         cases.push(case(&format!("npy of dtype {descr}"), npy(descr, false, "(2, 2)", &[0; 64])));
     }
     for shape in [
-        "()", "(4,)", "(2, 2, 3)", "(3, 2, 2)", "(0, 4)", "(4, 0)", "(65535, 2000)", "(99999, 99999)", "(-2, 2)", "(2, x)",
-        "(18446744073709551615, 18446744073709551615)", "2, 2", "(2, 2", "(1, 2, 2, 2, 1)",
+        "()",
+        "(4,)",
+        "(2, 2, 3)",
+        "(3, 2, 2)",
+        "(0, 4)",
+        "(4, 0)",
+        "(65535, 2000)",
+        "(99999, 99999)",
+        "(-2, 2)",
+        "(2, x)",
+        "(18446744073709551615, 18446744073709551615)",
+        "2, 2",
+        "(2, 2",
+        "(1, 2, 2, 2, 1)",
     ] {
         cases.push(case(&format!("npy of shape {shape}"), npy("<u2", false, shape, &[0; 6])));
     }
@@ -145,9 +190,18 @@ fn raw_png(width: u32, height: u32, depth: u8, color: u8, data: &[u8]) -> Vec<u8
 
 fn lying_pictures() -> Vec<Case> {
     let mut cases = Vec::new();
-    for (width, height, depth, color) in
-        [(0, 5, 8, 0), (5, 0, 8, 0), (1 << 31, 5, 8, 0), (60_000, 60_000, 16, 0), (60_000, 2_000, 16, 6), (7, 5, 3, 0), (7, 5, 8, 3), (7, 5, 8, 9), (7, 5, 16, 0), (70_000, 1, 8, 0)]
-    {
+    for (width, height, depth, color) in [
+        (0, 5, 8, 0),
+        (5, 0, 8, 0),
+        (1 << 31, 5, 8, 0),
+        (60_000, 60_000, 16, 0),
+        (60_000, 2_000, 16, 6),
+        (7, 5, 3, 0),
+        (7, 5, 8, 3),
+        (7, 5, 8, 9),
+        (7, 5, 16, 0),
+        (70_000, 1, 8, 0),
+    ] {
         let name = format!("png of {width} x {height}, depth {depth}, colour {color}");
         cases.push((name, raw_png(width, height, depth, color, b"\x78\x9c\x03\0\0\0\0\x01")));
     }
@@ -176,7 +230,8 @@ fn lying_pictures() -> Vec<Case> {
 
 fn rvl_and_lzf() -> Vec<Case> {
     let words = depthplanes_io::formats::rvl::pack(&depth());
-    let sized = |width: u32, height: u32, words: &[u8]| [&width.to_le_bytes()[..], &height.to_le_bytes(), words].concat();
+    let sized =
+        |width: u32, height: u32, words: &[u8]| [&width.to_le_bytes()[..], &height.to_le_bytes(), words].concat();
     let packed = lzf(&bytes_le(&depth()));
     vec![
         case("rvl with more rows", sized(7, 6, &words)),
@@ -200,7 +255,8 @@ fn rvl_and_lzf() -> Vec<Case> {
 #[cfg(feature = "tiff")]
 fn tiffs() -> Vec<Case> {
     let good = tiff(&depth());
-    let mut cases = vec![case("tiff without a directory", b"II*\0\x08\0\0\0"), case("tiff that loops", b"II*\0\0\0\0\0")];
+    let mut cases =
+        vec![case("tiff without a directory", b"II*\0\x08\0\0\0"), case("tiff that loops", b"II*\0\0\0\0\0")];
     // Every entry of the directory in turn gets a huge value.
     let at = u32::from_le_bytes(good[4..8].try_into().unwrap()) as usize;
     let tag = |entry: usize| u16::from_le_bytes(good[at + 2 + 12 * entry..][..2].try_into().unwrap());

@@ -28,9 +28,13 @@ const RIG: Stereo = Stereo { focal_px: 500.0, baseline_m: 0.2, doffs_px: 0.0 };
 
 #[test]
 fn units_of_the_depth_encodings() {
-    for (name, value, metres) in
-        [("millimetre", 1500, 1.5), ("metre", 3, 3.0), ("tum", 10_000, 2.0), ("icl", 5000, 1.0), ("realsense", 1500, 1.5)]
-    {
+    for (name, value, metres) in [
+        ("millimetre", 1500, 1.5),
+        ("metre", 3, 3.0),
+        ("tum", 10_000, 2.0),
+        ("icl", 5000, 1.0),
+        ("realsense", 1500, 1.5),
+    ] {
         let frame = read(&[value, 7], &named(name));
         assert!((depth_m(&frame, value.into()) - metres).abs() < 1e-12, "{name}");
         assert_eq!(frame.pixels, Pixels::U16(vec![value, 7]), "{name} keeps the numbers");
@@ -152,7 +156,8 @@ fn slope(from: u16, factor: u16) -> Vec<u16> {
 
 #[test]
 fn traps_name_the_option_to_try() {
-    let warnings = |values: Vec<u16>| decode(&pgm16(64, &values), "x", &ReadOptions::default()).unwrap().warnings.join("; ");
+    let warnings =
+        |values: Vec<u16>| decode(&pgm16(64, &values), "x", &ReadOptions::default()).unwrap().warnings.join("; ");
     assert_eq!(warnings(slope(1001, 1)), "");
     assert!(warnings(slope(1000, 8)).contains("--encoding kinect-sdk"));
     assert!(warnings(slope(1000, 5)).contains("--encoding tum"));

@@ -27,7 +27,8 @@ fn wrong(bytes: &[u8]) -> String {
 fn every_format_is_sniffed_and_gives_the_map_back() {
     let depth: Vec<f64> = depth().into_iter().map(f64::from).collect();
     for (name, kind, bytes) in valid_files() {
-        let (image, format) = decode(&bytes, &DecodeOptions::default()).unwrap_or_else(|e| panic!("{name} {kind}: {e}"));
+        let (image, format) =
+            decode(&bytes, &DecodeOptions::default()).unwrap_or_else(|e| panic!("{name} {kind}: {e}"));
         assert_eq!(format.name, name, "{kind}");
         assert_eq!((image.width, image.height), (WIDTH, HEIGHT), "{name} {kind}");
         assert_eq!(as_f64(&image.pixels), depth, "{name} {kind}");
@@ -108,7 +109,8 @@ fn pnm_widths_comments_and_maxval() {
 
 #[test]
 fn pfm_both_byte_orders_and_equal_channels() {
-    let big = [b"Pf\n2 2\n1.0\n".to_vec(), [1f32, 2.0, 3.0, 4.0].iter().flat_map(|v| v.to_be_bytes()).collect()].concat();
+    let big =
+        [b"Pf\n2 2\n1.0\n".to_vec(), [1f32, 2.0, 3.0, 4.0].iter().flat_map(|v| v.to_be_bytes()).collect()].concat();
     assert_eq!(read(&big).unwrap().pixels, Pixels::F32(vec![3.0, 4.0, 1.0, 2.0]));
     let odd: Vec<u8> = [1f32, 2.0, 3.0].iter().flat_map(|v| v.to_le_bytes()).collect();
     let image = read(&[b"Pf 1 3 -0.5\n".to_vec(), odd].concat()).unwrap();
@@ -142,11 +144,15 @@ fn npy_types_orders_and_shapes() {
     check!(i64, "i8");
     check!(f32, "f4");
     check!(f64, "f8");
-    let half: Vec<u8> = [0x3c00u16, 0xc000, 0x7c00, 0x0001, 0x3555, 0x7bff].iter().flat_map(|v| v.to_le_bytes()).collect();
+    let half: Vec<u8> =
+        [0x3c00u16, 0xc000, 0x7c00, 0x0001, 0x3555, 0x7bff].iter().flat_map(|v| v.to_le_bytes()).collect();
     let halves = as_f64(&read(&npy("<f2", false, "(2, 3)", &half)).unwrap().pixels);
     assert_eq!(halves, [1.0, -2.0, f64::INFINITY, 2f64.powi(-24), 0.333251953125, 65504.0]);
     for shape in ["(2, 3, 1)", "(1, 2, 3)", "(1, 2, 3, 1)", "(1,1,2,3)", "(2,3,)"] {
-        assert_eq!(read(&npy("|u1", false, shape, &[1, 2, 3, 4, 5, 6])).unwrap().pixels, Pixels::U8(vec![1, 2, 3, 4, 5, 6]));
+        assert_eq!(
+            read(&npy("|u1", false, shape, &[1, 2, 3, 4, 5, 6])).unwrap().pixels,
+            Pixels::U8(vec![1, 2, 3, 4, 5, 6])
+        );
     }
     let columns = read(&npy("|u1", true, "(2, 3)", &[1, 4, 2, 5, 3, 6])).unwrap();
     assert_eq!((columns.pixels, columns.width), (Pixels::U8(vec![1, 2, 3, 4, 5, 6]), 3));
@@ -215,7 +221,9 @@ fn the_header_of_a_float_compressed_depth_gives_its_measure() {
 fn tiff_floats_and_packings() {
     use tiff::encoder::{Compression, DeflateLevel, TiffEncoder, colortype};
     let values: Vec<f32> = depth().into_iter().map(f32::from).collect();
-    for packing in [Compression::Uncompressed, Compression::Packbits, Compression::Lzw, Compression::Deflate(DeflateLevel::Fast)] {
+    for packing in
+        [Compression::Uncompressed, Compression::Packbits, Compression::Lzw, Compression::Deflate(DeflateLevel::Fast)]
+    {
         let mut file = std::io::Cursor::new(Vec::new());
         let mut encoder = TiffEncoder::new(&mut file).unwrap().with_compression(packing);
         encoder.write_image::<colortype::Gray32Float>(7, 5, &values).unwrap();
@@ -228,7 +236,9 @@ fn tiff_floats_and_packings() {
 
 #[test]
 fn unsupported_files_are_named() {
-    for (start, name) in [(&b"\xff\xd8\xff\xe0 jfif"[..], "JPEG"), (b"\x1a\x45\xdf\xa3 mkv", "Matroska"), (b"\x1f\x8b\x08", "gzip")] {
+    for (start, name) in
+        [(&b"\xff\xd8\xff\xe0 jfif"[..], "JPEG"), (b"\x1a\x45\xdf\xa3 mkv", "Matroska"), (b"\x1f\x8b\x08", "gzip")]
+    {
         assert!(wrong(start).contains(name), "{}", wrong(start));
     }
     assert!(wrong(b"").contains("no bytes"));

@@ -7,7 +7,13 @@ use depthplanes::select::Selection;
 use depthplanes::{DepthView, Pixel};
 use naive::Random;
 
-fn labels<T: Pixel>(view: &DepthView<'_, T>, theta: f64, min: u32, kernel: &'static Kernel, threads: usize) -> Vec<u16> {
+fn labels<T: Pixel>(
+    view: &DepthView<'_, T>,
+    theta: f64,
+    min: u32,
+    kernel: &'static Kernel,
+    threads: usize,
+) -> Vec<u16> {
     let mut grouper = Grouper::with_kernel(kernel);
     let mut selection = Selection::default();
     let rule = LinkRule::new(view.validity(), theta).unwrap();
@@ -28,7 +34,12 @@ fn check<T: Pixel>(view: &DepthView<'_, T>, theta: f64, min: u32, what: &str) {
     for kernel in kernels() {
         for threads in [1, 2, 5] {
             let got = labels(view, theta, min, kernel, threads);
-            assert!(got == expected, "{what}: {kernel:?} on {threads} threads differs, {}x{}, theta {theta}, min {min}", view.width(), view.height());
+            assert!(
+                got == expected,
+                "{what}: {kernel:?} on {threads} threads differs, {}x{}, theta {theta}, min {min}",
+                view.width(),
+                view.height()
+            );
         }
     }
 }
@@ -118,7 +129,8 @@ fn values_at_the_ends_of_their_type_are_compared_without_overflow() {
 fn a_large_map_is_the_same_on_every_kernel_and_thread_count() {
     let mut random = Random(4);
     let (width, height) = (1000, 700);
-    let map: Vec<u16> = (0..width * height).map(|at| (500 + at / 999 % 300 + random.below(7) as usize) as u16).collect();
+    let map: Vec<u16> =
+        (0..width * height).map(|at| (500 + at / 999 % 300 + random.below(7) as usize) as u16).collect();
     check(&DepthView::new(&map, width, height).unwrap(), 2.0, 20, "large");
 }
 

@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 
 /// A furnished room without noise, in millimetres.
 const SCENE: &str = "room:sensor=clean_mm";
-/// Millimetres between neighbours of a slanted wall or of the floor, and the size of a table leg.
-const PARAMETERS: &[(&str, f64)] = &[("theta", 10.0), ("min", 300.0)];
+/// Millimetres between neighbours of a slanted wall, and the size of a table leg.
+const PARAMETERS: &[(&str, f64)] = &[("theta", 4.0), ("min", 1000.0)];
 
 pub(super) fn run(folder: &Path, out: &mut dyn Write) -> Outcome {
     let frame = load::scene(SCENE)?;

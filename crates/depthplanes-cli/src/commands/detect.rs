@@ -68,7 +68,7 @@ impl Plan<'_> {
             return Ok(Done { text: json(&report, self.alone), notes });
         }
         notes.extend(show::advice(&report));
-        Ok(Done { text: readable(self.wanted, &report, &written), notes })
+        Ok(Done { text: readable(self.wanted, &report, &written, self.alone), notes })
     }
 }
 
@@ -77,11 +77,11 @@ fn json(report: &Report<'_>, alone: bool) -> String {
 }
 
 /// The table, unless the planes went to files.
-fn readable(wanted: &Detect, report: &Report<'_>, written: &[(&Output, PathBuf)]) -> String {
+fn readable(wanted: &Detect, report: &Report<'_>, written: &[(&Output, PathBuf)], alone: bool) -> String {
     let mut text = show::summary(report);
     if written.is_empty() {
         text += &show::table(report, wanted.rows);
-        return text + "\n";
+        return if alone { text } else { text + "\n" };
     }
     let files: Vec<String> = written.iter().map(|(_, path)| path.display().to_string()).collect();
     text += &format!("wrote {}\n", files.join(", "));

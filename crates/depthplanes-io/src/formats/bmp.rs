@@ -12,7 +12,9 @@ pub(super) const FORMAT: Format = Format {
     name: "bmp",
     about: "Windows bitmap, uncompressed, grey palette (or equal channels)",
     extensions: &["bmp"],
-    sniff: |bytes| bytes.starts_with(b"BM") && bytes.len() >= 18 && matches!(bytes[14], 12 | 40 | 52 | 56 | 64 | 108 | 124),
+    sniff: |bytes| {
+        bytes.starts_with(b"BM") && bytes.len() >= 18 && matches!(bytes[14], 12 | 40 | 52 | 56 | 64 | 108 | 124)
+    },
     decode,
 };
 
@@ -121,9 +123,9 @@ fn push_palette_row(
     for u in 0..width {
         let shift = 8 - header.bits * (u % per_byte + 1);
         let index = usize::from(row[u / per_byte] >> shift & mask);
-        let entry = palette.get(index).ok_or_else(|| {
-            unreadable(format!("a pixel uses palette entry {index}, there are {}", palette.len()))
-        })?;
+        let entry = palette
+            .get(index)
+            .ok_or_else(|| unreadable(format!("a pixel uses palette entry {index}, there are {}", palette.len())))?;
         samples.extend_from_slice(entry);
     }
     Ok(())

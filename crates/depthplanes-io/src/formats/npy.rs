@@ -56,8 +56,9 @@ pub(super) fn header(format: &'static str, bytes: &[u8]) -> Result<Header> {
         Ok(text[at + quoted.len()..].trim_start())
     };
     let descr = field("descr")?;
-    let (sample, big_endian) = dtype(descr)
-        .ok_or_else(|| unreadable(format, format!("dtype {}", descr.split(", '").next().unwrap_or("").escape_default())))?;
+    let (sample, big_endian) = dtype(descr).ok_or_else(|| {
+        unreadable(format, format!("dtype {}", descr.split(", '").next().unwrap_or("").escape_default()))
+    })?;
     let fortran = field("fortran_order")?.starts_with("True");
     let [rows, columns] = shape(field("shape")?).map_err(|shape| unreadable(format, format!("shape {shape}")))?;
     Ok(Header { sample, big_endian, fortran, rows, columns, data_at: preamble + length })
@@ -112,7 +113,10 @@ pub(super) fn decode(format: &'static str, bytes: &[u8], limits: &Limits) -> Res
     let needed = area * sample.bytes();
     let data = &bytes[header.data_at..];
     let data = data.get(..needed).ok_or_else(|| {
-        unreadable(format, format!("{width} x {height} {} need {needed} bytes, {} are there", sample.name(), data.len()))
+        unreadable(
+            format,
+            format!("{width} x {height} {} need {needed} bytes, {} are there", sample.name(), data.len()),
+        )
     })?;
     let mut warnings = Vec::new();
     let pixels = pixels(data, sample, header.big_endian, &mut warnings);

@@ -86,7 +86,11 @@ impl Member<'_> {
     /// The first `size` bytes of the array.
     fn unpack(&self, size: u64, limits: &Limits) -> Result<Vec<u8>> {
         if size > limits.max_bytes as u64 {
-            return Err(Error::Limit { what: "size of the array in bytes", given: size, limit: limits.max_bytes as u64 });
+            return Err(Error::Limit {
+                what: "size of the array in bytes",
+                given: size,
+                limit: limits.max_bytes as u64,
+            });
         }
         if !self.deflated {
             let stored = self.packed.get(..size as usize);

@@ -21,7 +21,8 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
     };
     let area = options.limits.area("raw", width as u64, height as u64, 2)?;
     if bytes.len() != 2 * area {
-        let accepted = format!("a size of {} pixels in all: the input has {} bytes, two a pixel", bytes.len() / 2, bytes.len());
+        let accepted =
+            format!("a size of {} pixels in all: the input has {} bytes, two a pixel", bytes.len() / 2, bytes.len());
         return Err(Error::parameter("--raw-size", format_args!("{width}x{height}"), accepted));
     }
     let pixels = pixels(bytes, Sample::U16, false, &mut Vec::new());

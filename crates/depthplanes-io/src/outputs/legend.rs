@@ -110,19 +110,42 @@ pub(super) fn number_planes(picture: &mut Picture, detection: &Detection) {
     let scale = letter_scale(picture.height);
     let named = rows_that_fit(picture.height, scale).min(detection.planes.len());
     let anchors = anchors(detection, named);
+    let mut written: Vec<Area> = Vec::new();
     for (plane, anchor) in detection.planes[..named].iter().zip(anchors) {
         let text = plane.label.to_string();
-        let size = [font::width(&text, scale), font::HEIGHT * scale];
-        let covered = (size[0] + 2 * scale) * (size[1] + 2 * scale);
-        if plane.pixel_count < 3 * covered {
+        let area = Area::around(anchor, &text, scale, picture);
+        let small = plane.pixel_count < 3 * area.size[0] * area.size[1];
+        if small || written.iter().any(|other| other.touches(&area)) {
             continue;
         }
-        let corner = [0, 1].map(|axis| {
-            let room = [picture.width, picture.height][axis].saturating_sub(size[axis] + scale);
-            anchor[axis].saturating_sub(size[axis] / 2).clamp(scale, room.max(scale))
-        });
+        let corner = area.corner.map(|side| side + scale);
         halo(picture, corner, scale, &text);
         font::write(picture, corner, scale, [255; 3], &text);
+        written.push(area);
+    }
+}
+
+/// What a number and its halo cover.
+struct Area {
+    corner: [usize; 2],
+    size: [usize; 2],
+}
+
+impl Area {
+    /// The area of a text centred on a pixel, moved so that it lies within the picture.
+    fn around(pixel: [usize; 2], text: &str, scale: usize, picture: &Picture) -> Area {
+        let size = [font::width(text, scale) + 2 * scale, (font::HEIGHT + 2) * scale];
+        let sides = [picture.width, picture.height];
+        let start =
+            |axis: usize| pixel[axis].saturating_sub(size[axis] / 2).min(sides[axis].saturating_sub(size[axis]));
+        Area { corner: [start(0), start(1)], size }
+    }
+
+    fn touches(&self, other: &Area) -> bool {
+        (0..2).all(|axis| {
+            let (a, b) = (self.corner[axis], other.corner[axis]);
+            a <= b + other.size[axis] && b <= a + self.size[axis]
+        })
     }
 }
 

@@ -71,26 +71,47 @@ fn bits_32(condition: impl Fn(usize) -> __m256) -> u64 {
     (0..64).step_by(8).fold(0, |word, lane| word | (_mm256_movemask_ps(condition(lane)) as u32 as u64) << lane)
 }
 
-masks!(masks_u8, u8, _mm256_loadu_si256, _mm256_set1_epi8, bits_8,
-    |a, b, zero, sentinel, low, high, theta|
-    _mm256_andnot_si256(
+masks!(
+    masks_u8,
+    u8,
+    _mm256_loadu_si256,
+    _mm256_set1_epi8,
+    bits_8,
+    |a, b, zero, sentinel, low, high, theta| _mm256_andnot_si256(
         _mm256_cmpeq_epi8(a, sentinel),
-        _mm256_cmpeq_epi8(_mm256_min_epu8(_mm256_max_epu8(a, low), high), a)),
-    _mm256_cmpeq_epi8(zero, _mm256_subs_epu8(_mm256_sub_epi8(_mm256_max_epu8(a, b), _mm256_min_epu8(a, b)), theta)));
+        _mm256_cmpeq_epi8(_mm256_min_epu8(_mm256_max_epu8(a, low), high), a)
+    ),
+    _mm256_cmpeq_epi8(zero, _mm256_subs_epu8(_mm256_sub_epi8(_mm256_max_epu8(a, b), _mm256_min_epu8(a, b)), theta))
+);
 
-masks!(masks_u16, u16, _mm256_loadu_si256, _mm256_set1_epi16, bits_16,
-    |a, b, zero, sentinel, low, high, theta|
-    _mm256_andnot_si256(
+masks!(
+    masks_u16,
+    u16,
+    _mm256_loadu_si256,
+    _mm256_set1_epi16,
+    bits_16,
+    |a, b, zero, sentinel, low, high, theta| _mm256_andnot_si256(
         _mm256_cmpeq_epi16(a, sentinel),
-        _mm256_cmpeq_epi16(_mm256_min_epu16(_mm256_max_epu16(a, low), high), a)),
-    _mm256_cmpeq_epi16(zero, _mm256_subs_epu16(_mm256_sub_epi16(_mm256_max_epu16(a, b), _mm256_min_epu16(a, b)), theta)));
+        _mm256_cmpeq_epi16(_mm256_min_epu16(_mm256_max_epu16(a, low), high), a)
+    ),
+    _mm256_cmpeq_epi16(
+        zero,
+        _mm256_subs_epu16(_mm256_sub_epi16(_mm256_max_epu16(a, b), _mm256_min_epu16(a, b)), theta)
+    )
+);
 
-masks!(masks_f32, f32, _mm256_loadu_ps, _mm256_set1_ps, bits_32,
-    |a, b, zero, sentinel, low, high, theta|
-    _mm256_and_ps(
+masks!(
+    masks_f32,
+    f32,
+    _mm256_loadu_ps,
+    _mm256_set1_ps,
+    bits_32,
+    |a, b, zero, sentinel, low, high, theta| _mm256_and_ps(
         _mm256_and_ps(_mm256_cmp_ps::<_CMP_NEQ_UQ>(a, zero), _mm256_cmp_ps::<_CMP_NEQ_UQ>(a, sentinel)),
-        _mm256_and_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(a, low), _mm256_cmp_ps::<_CMP_LE_OQ>(a, high))),
-    _mm256_cmp_ps::<_CMP_LE_OQ>(_mm256_andnot_ps(_mm256_set1_ps(-0.0), _mm256_sub_ps(a, b)), theta));
+        _mm256_and_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(a, low), _mm256_cmp_ps::<_CMP_LE_OQ>(a, high))
+    ),
+    _mm256_cmp_ps::<_CMP_LE_OQ>(_mm256_andnot_ps(_mm256_set1_ps(-0.0), _mm256_sub_ps(a, b)), theta)
+);
 
 impl Isa for Avx2 {
     #[inline(always)]

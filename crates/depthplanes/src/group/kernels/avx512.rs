@@ -48,23 +48,46 @@ macro_rules! masks {
     };
 }
 
-masks!(masks_u8, u8, 64, _mm512_loadu_si512, _mm512_set1_epi8,
-    |a, b, _zero, sentinel, low, high, theta|
-    _mm512_mask_cmpneq_epi8_mask(
-        _mm512_cmpeq_epi8_mask(a, _mm512_min_epu8(_mm512_max_epu8(a, low), high)), a, sentinel),
-    _mm512_cmple_epu8_mask(_mm512_sub_epi8(_mm512_max_epu8(a, b), _mm512_min_epu8(a, b)), theta));
+masks!(
+    masks_u8,
+    u8,
+    64,
+    _mm512_loadu_si512,
+    _mm512_set1_epi8,
+    |a, b, _zero, sentinel, low, high, theta| _mm512_mask_cmpneq_epi8_mask(
+        _mm512_cmpeq_epi8_mask(a, _mm512_min_epu8(_mm512_max_epu8(a, low), high)),
+        a,
+        sentinel
+    ),
+    _mm512_cmple_epu8_mask(_mm512_sub_epi8(_mm512_max_epu8(a, b), _mm512_min_epu8(a, b)), theta)
+);
 
-masks!(masks_u16, u16, 32, _mm512_loadu_si512, _mm512_set1_epi16,
-    |a, b, _zero, sentinel, low, high, theta|
-    _mm512_mask_cmpneq_epi16_mask(
-        _mm512_cmpeq_epi16_mask(a, _mm512_min_epu16(_mm512_max_epu16(a, low), high)), a, sentinel),
-    _mm512_cmple_epu16_mask(_mm512_sub_epi16(_mm512_max_epu16(a, b), _mm512_min_epu16(a, b)), theta));
+masks!(
+    masks_u16,
+    u16,
+    32,
+    _mm512_loadu_si512,
+    _mm512_set1_epi16,
+    |a, b, _zero, sentinel, low, high, theta| _mm512_mask_cmpneq_epi16_mask(
+        _mm512_cmpeq_epi16_mask(a, _mm512_min_epu16(_mm512_max_epu16(a, low), high)),
+        a,
+        sentinel
+    ),
+    _mm512_cmple_epu16_mask(_mm512_sub_epi16(_mm512_max_epu16(a, b), _mm512_min_epu16(a, b)), theta)
+);
 
-masks!(masks_f32, f32, 16, _mm512_loadu_ps, _mm512_set1_ps,
-    |a, b, zero, sentinel, low, high, theta|
-    _mm512_cmp_ps_mask::<_CMP_NEQ_UQ>(a, zero) & _mm512_cmp_ps_mask::<_CMP_NEQ_UQ>(a, sentinel)
-        & _mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, low) & _mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, high),
-    _mm512_cmp_ps_mask::<_CMP_LE_OQ>(_mm512_abs_ps(_mm512_sub_ps(a, b)), theta));
+masks!(
+    masks_f32,
+    f32,
+    16,
+    _mm512_loadu_ps,
+    _mm512_set1_ps,
+    |a, b, zero, sentinel, low, high, theta| _mm512_cmp_ps_mask::<_CMP_NEQ_UQ>(a, zero)
+        & _mm512_cmp_ps_mask::<_CMP_NEQ_UQ>(a, sentinel)
+        & _mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, low)
+        & _mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, high),
+    _mm512_cmp_ps_mask::<_CMP_LE_OQ>(_mm512_abs_ps(_mm512_sub_ps(a, b)), theta)
+);
 
 impl Isa for Avx512 {
     #[inline(always)]
