@@ -101,9 +101,10 @@ fn curved(seed: u64) -> Staged {
     scene.column([near(0.8), near(2.2), 0.0], 0.18, 0.5);
     scene.column([near(-0.35), near(3.3), 0.0], 0.4, 0.75);
     // A curtain's wave, a cushion against the wall and one on the floor, a roll lying down.
-    for fold in 0..4 {
-        let (x, out) = (1.25 + 0.2 * f64::from(fold), if fold % 2 == 0 { -1.0 } else { 1.0 });
-        scene.sheet([x, 3.9 + 0.07 * out, 1.2], [0.0, 0.0, 1.0], [0.0, out, 0.0], [2.4, 0.2], 0.14);
+    let sagitta = 0.14 - (0.14f64 * 0.14 - 0.1 * 0.1).sqrt();
+    for fold in 0..5 {
+        let (x, out) = (1.2 + 0.2 * f64::from(fold), if fold % 2 == 0 { -1.0 } else { 1.0 });
+        scene.sheet([x, 3.9 + sagitta * out, 1.2], [0.0, 0.0, 1.0], [0.0, out, 0.0], [2.4, 0.2], 0.14);
     }
     scene.sheet([near(-0.9), 4.05, 1.35], [1.0, 0.0, 0.0], [0.0, -1.0, 0.15], [0.9, 0.6], 0.7);
     scene.sheet([near(-1.3), near(2.7), 0.2], [0.8, 0.5, 0.0], [0.0, -0.3, 1.0], [0.7, 0.7], 0.9);

@@ -101,7 +101,7 @@ impl Random {
         low + (high - low) * self.uniform()
     }
 
-    /// A whole number in `low..=high`, for small ranges (the bias is range / 2^53).
+    /// A whole number in `low..=high` (`low <= high`), for small ranges: the bias is range / 2^53.
     pub fn whole(&mut self, low: usize, high: usize) -> usize {
         low + (self.uniform() * (high + 1 - low) as f64) as usize
     }

@@ -126,8 +126,8 @@ impl SceneFrame {
 pub fn render(scene: &Scene, camera: &Camera, sensor: SensorModel, seed: u64) -> Result<SceneFrame> {
     camera.check()?;
     let seen = cast::cast(scene, camera);
-    let truth = Truth::new(scene, camera, &seen);
     let pixels = sensor.pixels(&sensors::Exposure { scene, camera, seen: &seen }, seed);
+    let truth = Truth::new(scene, camera, seen);
     let sensor = Sensor { measure: sensor.measure(camera), intrinsics: Some(camera.intrinsics) };
     Ok(SceneFrame { width: camera.width, height: camera.height, pixels, sensor, truth })
 }

@@ -122,7 +122,7 @@ pub(super) fn room(seed: u64) -> Staged {
     scene_mut.stairs(near(Place::at(-1.2, 2.45).turned(35.0)), [0.42, 0.5, 0.44], 2);
     scene_mut.column([0.5, 4.1, 0.0], 0.13, height);
     scene_mut.column(near(Place::at(0.15, 2.2)).origin_m, 0.14, 0.32);
-    let ball = near(Place::at(0.75, 3.25)).raised(0.16);
+    let ball = near(Place::at(0.92, 2.35)).raised(0.16);
     scene_mut.ball(ball.origin_m, 0.16);
     let pose = Pose { yaw_deg: 7.0, ..Pose::at_height(1.55, 15.0) };
     Staged { scene, pose }
@@ -134,7 +134,8 @@ pub(super) fn stairs(seed: u64) -> Staged {
     scene.facet(&[[-1.0, -1.0, 0.0], [3.0, -1.0, 0.0], [3.0, 6.5, 0.0], [-1.0, 6.5, 0.0]]);
     wall(&mut scene, Place::at(-1.0, 0.0).turned(90.0), [-1.0, 6.5], 3.6, &[[4.9, 5.8, 1.36, 3.4]]);
     reveal(&mut scene, Place::at(-1.0, 0.0).turned(90.0), [4.9, 5.8, 1.36, 3.4], 0.12, false);
-    wall(&mut scene, Place::at(0.0, 6.0), [-1.0, 3.0], 3.6, &[]);
+    wall(&mut scene, Place::at(0.0, 6.0), [-1.0, 2.2], 3.6, &[]);
+    wall(&mut scene, Place::at(2.2, 0.0).turned(-90.0), [-6.5, 1.0], 3.6, &[]);
     scene.stairs(Place::at(-0.4, 2.2), [1.2, 2.24, 1.36], 8);
     scene.block(Place::at(-0.4, 4.44), [-0.6, 0.0, 0.0], [1.4, 1.56, 1.36]);
     scene.ramp(moved(Place::at(0.75, 2.3), &mut random), [0.7, 2.1, 0.6]);
@@ -144,7 +145,7 @@ pub(super) fn stairs(seed: u64) -> Staged {
         scene.block(Place::at(0.25, y), [-0.02, -0.02, 0.0], [0.02, 0.02, z + 0.85]);
     }
     scene.roll([0.25, 2.25, 0.98], [0.25, 4.3, 2.22], 0.03);
-    let pose = Pose { yaw_deg: random.between(-3.0, 3.0), ..Pose::at_height(1.6, 7.0) };
+    let pose = Pose { yaw_deg: 4.0 + random.between(-3.0, 3.0), ..Pose::at_height(1.85, 13.0) };
     Staged { scene, pose }
 }
 

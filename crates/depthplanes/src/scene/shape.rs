@@ -59,7 +59,7 @@ impl Shape {
             }
             Shape::Disc { inverse, centre, radius } => {
                 let q = dot(*inverse, ray);
-                if !(q > least) {
+                if q <= least {
                     return None;
                 }
                 let off = sub(scale(ray, 1.0 / q), *centre);
@@ -168,7 +168,7 @@ impl Bounds {
             for corner in 0..8 {
                 let step = |bit: usize| if corner >> bit & 1 == 0 { -radius } else { radius };
                 let point = add(end, [step(0), step(1), step(2)]);
-                if !(point[2] >= NEAR_M) {
+                if point[2] < NEAR_M {
                     return Bounds::EVERYWHERE;
                 }
                 bounds.include(camera.project(point));

@@ -44,7 +44,7 @@ pub struct TruthPlane {
 }
 
 impl Truth {
-    pub(super) fn new(scene: &Scene, camera: &Camera, seen: &Cast) -> Self {
+    pub(super) fn new(scene: &Scene, camera: &Camera, seen: Cast) -> Self {
         let eye = camera.extrinsics();
         let planes: Vec<_> = scene.surfaces.iter().map(|surface| plane_of(surface, &eye)).collect();
         let flat = |&surface: &u32| if surface > 0 && planes[surface as usize - 1].is_some() { surface } else { 0 };
@@ -60,8 +60,8 @@ impl Truth {
             height: camera.height,
             labels,
             planes: planes.collect(),
-            depth_m: seen.depth_m.clone(),
-            surfaces: seen.surfaces.clone(),
+            depth_m: seen.depth_m,
+            surfaces: seen.surfaces,
             curved: scene.surfaces.iter().map(round).collect(),
         }
     }

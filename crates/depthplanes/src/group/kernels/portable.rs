@@ -27,35 +27,37 @@ impl Isa for Portable {
 
     #[inline(always)]
     fn positions(mask: &[u64], out: &mut Vec<u16>) {
-        for (w, &word) in mask.iter().enumerate() {
+        let mut end = out.len();
+        let count: usize = mask.iter().map(|word| word.count_ones() as usize).sum();
+        out.resize(end + count + 4, 0);
+        for (first, &word) in (0u32..).step_by(64).zip(mask) {
             let mut rest = word;
+            let mut at = end;
+            // Four at a time, the surplus being overwritten, spares a branch for each.
             while rest != 0 {
-                out.push((w as u32 * 64 + rest.trailing_zeros()) as u16);
-                rest &= rest - 1;
+                for position in &mut out[at..at + 4] {
+                    *position = (first + rest.trailing_zeros()) as u16;
+                    rest &= rest.wrapping_sub(1);
+                }
+                at += 4;
             }
+            end += word.count_ones() as usize;
         }
+        out.truncate(end);
     }
 
     #[inline(always)]
     fn paint_row(valid: &[u64], starts: &[u64], label_of_run: &[u16], row: &mut [u16]) {
-        let mut run = 0;
-        let mut label = 0;
+        let mut begun = 0;
         for (w, pixels) in row.chunks_mut(64).enumerate() {
             let (valid, starts) = (valid[w], starts[w]);
-            if valid == 0 {
-                pixels.fill(0);
-                continue;
-            }
-            if starts == 0 && valid == u64::MAX {
-                pixels.fill(label);
+            if starts == 0 && (valid == 0 || valid == u64::MAX) {
+                pixels.fill(if valid == 0 { 0 } else { label_of_run[begun - 1] });
                 continue;
             }
             for (bit, pixel) in pixels.iter_mut().enumerate() {
-                if starts >> bit & 1 == 1 {
-                    label = label_of_run[run];
-                    run += 1;
-                }
-                *pixel = label & ((valid >> bit & 1) as u16).wrapping_neg();
+                begun += (starts >> bit & 1) as usize;
+                *pixel = label_of_run[begun.saturating_sub(1)] & ((valid >> bit & 1) as u16).wrapping_neg();
             }
         }
     }
