@@ -62,7 +62,15 @@ pub(crate) fn frame(input: &Input, options: &ReadOptions) -> Outcome<Frame> {
     match input {
         Input::File(path) => Ok(depthplanes_io::read(path, options)?),
         Input::Standard => Ok(depthplanes_io::decode(&standard_input()?, "-", options)?),
-        Input::Scene(spec) => scene(spec),
+        Input::Scene(spec) => {
+            let mut frame = scene(spec)?;
+            if *options != ReadOptions::default() {
+                frame
+                    .warnings
+                    .push("a made-up scene knows its own unit and camera: flags on reading are not used".into());
+            }
+            Ok(frame)
+        }
     }
 }
 

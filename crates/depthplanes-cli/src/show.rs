@@ -83,7 +83,7 @@ fn metric_row(plane: &Plane) -> Vec<String> {
     let middle = plane.metric.map_or(unknown(5), |metric| {
         let mut cells = vec![format!("{:.3} m", metric.plane.distance)];
         cells.extend(metric.plane.normal.map(|x| format!("{x:.3}")));
-        cells.push(length(metric.rms_m));
+        cells.push(format!("{:.1} mm", 1e3 * metric.rms_m));
         cells
     });
     assemble(plane, middle)

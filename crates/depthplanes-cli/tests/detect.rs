@@ -196,6 +196,14 @@ fn a_made_up_scene_is_an_input() {
 }
 
 #[test]
+fn reading_flags_that_a_scene_cannot_use_are_remarked_on() {
+    let bench = Bench::new("scene_flags");
+    let ran = bench.run(&["detect", "scene:room:size=64x48", "--preset", "kinect1"]);
+    assert!(ran.err.contains("flags on reading are not used"), "{ran:?}");
+    ran.ok();
+}
+
+#[test]
 fn disparities_with_a_rig_become_metric() {
     let bench = Bench::with_map("rig");
     let words = ["detect", "map.pgm", "--json", "--disparity", "--focal", "1000", "--baseline", "0.1"];

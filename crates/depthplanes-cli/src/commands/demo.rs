@@ -1,6 +1,7 @@
 //! `depthplanes demo`: a made-up scene through the whole pipeline, into files to look at.
 
-use crate::failure::{Failure, Outcome};
+use super::make_folder;
+use crate::failure::Outcome;
 use crate::run::{Recipe, Runner};
 use crate::{load, show};
 use depthplanes::methods::METHODS;
@@ -28,8 +29,7 @@ pub(super) fn run(folder: &Path, out: &mut dyn Write) -> Outcome {
         times: None,
         legend: true,
     };
-    let failed = |error| Failure::machine(format!("{}: the folder cannot be made: {error}", folder.display()));
-    std::fs::create_dir_all(folder).map_err(failed)?;
+    make_folder(folder)?;
     let depth = folder.join("depth.png");
     outputs::write_file(&depth, &depth_png(&frame))?;
     let files: Vec<(&Output, PathBuf)> = OUTPUTS.iter().map(|output| (output, folder.join(output.file))).collect();

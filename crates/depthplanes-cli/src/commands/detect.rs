@@ -1,5 +1,6 @@
 //! `depthplanes detect`: maps in, planes out as a table, as JSON or as files.
 
+use super::{make_folder, refuse_file};
 use crate::args::Detect;
 use crate::failure::{Failure, Outcome, note};
 use crate::inputs::{self, Input};
@@ -95,8 +96,7 @@ fn readable(wanted: &Detect, report: &Report<'_>, written: &[(&Output, PathBuf)]
 fn write(wanted: &Detect, input: &Input, report: &Report<'_>) -> Outcome<Vec<(&'static Output, PathBuf)>> {
     let mut files = wanted.outputs.clone();
     if let Some(folder) = &wanted.out_dir {
-        let failed = |error| Failure::machine(format!("{}: the folder cannot be made: {error}", folder.display()));
-        std::fs::create_dir_all(folder).map_err(failed)?;
+        make_folder(folder)?;
         let possible = OUTPUTS.iter().filter(|output| report.is_metric() || !output.needs_camera);
         files.extend(possible.map(|output| (output, file_in(folder, input, output))));
     }
@@ -121,9 +121,7 @@ fn check_outputs(wanted: &Detect, inputs: &[Input]) -> Outcome {
     let named = wanted.outputs.iter().map(|(output, path)| (path.clone(), format!("--{}", output.name)));
     let mut written: Vec<(PathBuf, String)> = named.collect();
     if let Some(folder) = &wanted.out_dir {
-        if folder.exists() && !folder.is_dir() {
-            return Err(Failure::request(format!("{}: --out-dir needs a folder, this is a file", folder.display())));
-        }
+        refuse_file(folder)?;
         for input in inputs {
             let name = |output: &Output| format!("the {} of {}", output.name, input.name());
             written.extend(OUTPUTS.iter().map(|output| (file_in(folder, input, output), name(output))));

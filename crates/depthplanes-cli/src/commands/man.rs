@@ -1,7 +1,8 @@
 //! `depthplanes man`: the manual pages.
 
+use super::make_folder;
 use crate::args;
-use crate::failure::{Failure, Outcome};
+use crate::failure::Outcome;
 use depthplanes_io::outputs::write_file;
 use std::io::Write;
 use std::path::Path;
@@ -11,8 +12,7 @@ pub(super) fn run(out_dir: Option<&Path>, out: &mut dyn Write) -> Outcome {
     let Some(folder) = out_dir else {
         return Ok(out.write_all(&pages[0].1)?);
     };
-    let failed = |error| Failure::machine(format!("{}: cannot be made: {error}", folder.display()));
-    std::fs::create_dir_all(folder).map_err(failed)?;
+    make_folder(folder)?;
     for (name, page) in &pages {
         write_file(&folder.join(name), page)?;
     }

@@ -8,8 +8,9 @@ mod lists;
 mod man;
 
 use crate::args::Command;
-use crate::failure::Outcome;
+use crate::failure::{Failure, Outcome};
 use std::io::Write;
+use std::path::Path;
 
 /// Runs a command; `out` is standard output.
 pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
@@ -24,5 +25,23 @@ pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
         Command::Presets => lists::presets(out),
         Command::Completions { shell } => completions::run(*shell, out),
         Command::Man { out_dir } => man::run(out_dir.as_deref(), out),
+    }
+}
+
+/// Makes a folder for results, if it is not there yet.
+///
+/// # Errors
+/// A file of that name, or a disk that refuses.
+fn make_folder(folder: &Path) -> Outcome {
+    refuse_file(folder)?;
+    let failed = |error| Failure::machine(format!("{}: the folder cannot be made: {error}", folder.display()));
+    std::fs::create_dir_all(folder).map_err(failed)
+}
+
+/// Refuses a file where a folder is needed.
+fn refuse_file(folder: &Path) -> Outcome {
+    match folder.is_dir() || !folder.exists() {
+        true => Ok(()),
+        false => Err(Failure::request(format!("{}: --out-dir needs a folder, this is a file", folder.display()))),
     }
 }
