@@ -206,22 +206,26 @@ fn integer_traps(frame: &Frame, probe: &Probe, found: &mut Vec<String>) {
         found.push("neighbours differ far less with their bytes swapped: try --swap-bytes".to_string());
         return;
     }
-    let values = || probe.valid.iter().map(|value| *value as u32).filter(|value| *value != 65_535);
-    let divisor = values().fold(0, common_divisor);
-    let largest = values().max().unwrap_or(0);
+    let values: Vec<u32> = probe.valid.iter().map(|value| *value as u32).filter(|value| *value != 65_535).collect();
+    let largest = values.iter().max().copied().unwrap_or(0);
     if largest < 256 {
         found.push(format!("16 bits but no value above {largest}: grey levels or labels? try --encoding grey"));
-    } else if frame.encoding != "millimetre" || largest == divisor {
-        // The other encodings were stated by someone who knows.
-    } else if divisor % 8 == 0 {
-        found.push("all values are multiples of 8, as packed by Kinect SDK 1 and SUN RGB-D: try --encoding kinect-sdk or sun-rgbd".to_string());
-    } else if divisor % 5 == 0 {
-        found.push("all values are multiples of 5, as in TUM RGB-D (5000 a metre): try --encoding tum".to_string());
+        return;
     }
-}
-
-fn common_divisor(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { common_divisor(b, a % b) }
+    let mut levels = values.clone();
+    levels.sort_unstable();
+    levels.dedup();
+    if frame.encoding != "millimetre" || levels.len() < 8 {
+        return; // The other encodings were stated by someone who knows.
+    }
+    // Not quite all: player bits and distances above 8 m leave other remainders.
+    let multiples = |of: u32| values.iter().filter(|value| value.is_multiple_of(of)).count() * 100 >= values.len() * 95;
+    if multiples(8) {
+        let packed = "the values are multiples of 8, as Kinect SDK 1 and SUN RGB-D pack them";
+        found.push(format!("{packed}: try --encoding kinect-sdk or sun-rgbd"));
+    } else if multiples(5) {
+        found.push("the values are multiples of 5, as in TUM RGB-D (5000 a metre): try --encoding tum".to_string());
+    }
 }
 
 /// Metres for millimetres and the other way round.

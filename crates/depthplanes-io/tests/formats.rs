@@ -159,6 +159,16 @@ fn npy_types_orders_and_shapes() {
 }
 
 #[test]
+fn npy_clouds_give_their_z_and_pictures_are_refused() {
+    let xyz: Vec<u8> = (0..12).flat_map(|i| (i as f32).to_le_bytes()).collect();
+    let cloud = read(&npy("<f4", false, "(2, 2, 3)", &xyz)).unwrap();
+    assert_eq!((cloud.pixels, cloud.warnings.len()), (Pixels::F32(vec![2.0, 5.0, 8.0, 11.0]), 1));
+    let columns = read(&npy("<f4", true, "(2, 2, 3)", &xyz)).unwrap();
+    assert_eq!(columns.pixels, Pixels::F32(vec![8.0, 10.0, 9.0, 11.0]));
+    assert!(wrong(&npy("|u1", false, "(2, 2, 3)", &[0; 12])).contains("colour"));
+}
+
+#[test]
 fn integers_that_do_not_fit_and_negative_ones() {
     let negative: Vec<u8> = [-5i32, 7].iter().flat_map(|value| value.to_le_bytes()).collect();
     let image = read(&npy("<i4", false, "(1, 2)", &negative)).unwrap();

@@ -33,10 +33,6 @@ impl<'a> Cursor<'a> {
     pub(super) fn i32(&mut self) -> Option<i32> {
         self.array().map(i32::from_le_bytes)
     }
-
-    pub(super) fn u64(&mut self) -> Option<u64> {
-        self.array().map(u64::from_le_bytes)
-    }
 }
 
 /// A line of text and the rest, split at the first `\n`; a `\r` before it is dropped. `None` if

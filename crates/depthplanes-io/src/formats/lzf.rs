@@ -22,9 +22,14 @@ pub(super) fn decompress(packed: &[u8], size: usize) -> Option<Vec<u8>> {
             }
             let back = ((control & 31) << 8 | usize::from(*bytes.next()?)) + 1;
             let from = out.len().checked_sub(back)?;
-            // The copied bytes may overlap the ones being written.
-            for at in from..from + length + 2 {
-                out.push(out[at]);
+            let length = length + 2;
+            if length <= back {
+                out.extend_from_within(from..from + length);
+            } else {
+                // The copied bytes overlap the ones being written.
+                for at in from..from + length {
+                    out.push(out[at]);
+                }
             }
         }
         if out.len() > size {

@@ -1,14 +1,16 @@
 //! NumPy arrays (`.npy`, format versions 1 to 3).
 //!
 //! In: an array of integers or floats of any byte order, two axes (rows, columns) beside axes of
-//! length 1, in C or Fortran order. Out: `u8`, `u16` or `f32` values by the rules of `samples`.
+//! length 1, in C or Fortran order; or an organised cloud, floats of shape (rows, columns, 3), of
+//! which z is taken. Out: `u8`, `u16` or `f32` values by the rules of `samples`.
 //! The header is read here because all that is needed of it is three fields.
+
+use std::borrow::Cow;
 
 use super::bytes::Cursor;
 use super::samples::{Sample, pixels};
 use super::{Format, Image, Limits};
 use crate::error::{Error, Result};
-use crate::frame::Pixels;
 
 pub(super) const FORMAT: Format = Format {
     name: "npy",
@@ -28,11 +30,14 @@ pub(super) struct Header {
     fortran: bool,
     pub(super) rows: u64,
     pub(super) columns: u64,
+    /// 1, or 3 for x, y, z.
+    channels: u64,
     data_at: usize,
 }
 
 fn unreadable(format: &'static str, wrong: impl Into<String>) -> Error {
-    let accepted = "an array of two axes (rows, columns), uint8 to uint64, int8 to int64 or float16 to float64";
+    let accepted = "an array of two axes (rows, columns), uint8 to uint64, int8 to int64 or float16 to float64; or \
+         an organised cloud, floats of shape (rows, columns, 3)";
     Error::Unreadable { format, wrong: wrong.into(), accepted }
 }
 
@@ -60,8 +65,12 @@ pub(super) fn header(format: &'static str, bytes: &[u8]) -> Result<Header> {
         unreadable(format, format!("dtype {}", descr.split(", '").next().unwrap_or("").escape_default()))
     })?;
     let fortran = field("fortran_order")?.starts_with("True");
-    let [rows, columns] = shape(field("shape")?).map_err(|shape| unreadable(format, format!("shape {shape}")))?;
-    Ok(Header { sample, big_endian, fortran, rows, columns, data_at: preamble + length })
+    let [rows, columns, channels] =
+        shape(field("shape")?).map_err(|shape| unreadable(format, format!("shape {shape}")))?;
+    if channels != 1 && !matches!(sample, Sample::F32 | Sample::F64) {
+        return Err(unreadable(format, format!("three channels of {}: a colour picture, not depth", sample.name())));
+    }
+    Ok(Header { sample, big_endian, fortran, rows, columns, channels, data_at: preamble + length })
 }
 
 /// `'<u2'` and its like.
@@ -85,9 +94,9 @@ fn dtype(descr: &str) -> Option<(Sample, bool)> {
     Some((sample, big_endian))
 }
 
-/// Rows and columns of a shape tuple, axes of length 1 dropped from the front, then from the back,
-/// until two are left; otherwise the shape as text.
-fn shape(text: &str) -> std::result::Result<[u64; 2], String> {
+/// Rows, columns and channels (1 or 3) of a shape tuple, axes of length 1 dropped from the front,
+/// then from the back, until two are left; otherwise the shape as text.
+fn shape(text: &str) -> std::result::Result<[u64; 3], String> {
     let tuple = text.split_inclusive(')').next().unwrap_or("");
     let refuse = || tuple.chars().take(80).collect::<String>().escape_default().to_string();
     let inner = tuple.strip_prefix('(').and_then(|t| t.strip_suffix(')')).ok_or_else(refuse)?;
@@ -98,19 +107,24 @@ fn shape(text: &str) -> std::result::Result<[u64; 2], String> {
     while axes.len() > 2 {
         axes = match axes {
             [1, rest @ ..] | [rest @ .., 1] => rest,
+            [rows, columns, 3] => return Ok([*rows, *columns, 3]),
             _ => return Err(refuse()),
         };
     }
-    axes.try_into().map_err(|_| refuse())
+    match *axes {
+        [rows, columns] => Ok([rows, columns, 1]),
+        _ => Err(refuse()),
+    }
 }
 
 /// Reads the array; `format` is `npy`, or `npz` for a member of an archive.
 pub(super) fn decode(format: &'static str, bytes: &[u8], limits: &Limits) -> Result<Image> {
     let header = header(format, bytes)?;
     let sample = header.sample;
-    let area = limits.area(format, header.columns, header.rows, sample.bytes())?;
+    let channels = header.channels as usize;
+    let area = limits.area(format, header.columns, header.rows, channels * sample.bytes())?;
     let (width, height) = (header.columns as usize, header.rows as usize);
-    let needed = area * sample.bytes();
+    let needed = area * channels * sample.bytes();
     let data = &bytes[header.data_at..];
     let data = data.get(..needed).ok_or_else(|| {
         unreadable(
@@ -119,17 +133,28 @@ pub(super) fn decode(format: &'static str, bytes: &[u8], limits: &Limits) -> Res
         )
     })?;
     let mut warnings = Vec::new();
-    let pixels = pixels(data, sample, header.big_endian, &mut warnings);
-    let pixels = match pixels {
-        pixels if !header.fortran => pixels,
-        Pixels::U8(values) => Pixels::U8(transpose(&values, width, height)),
-        Pixels::U16(values) => Pixels::U16(transpose(&values, width, height)),
-        Pixels::F32(values) => Pixels::F32(transpose(&values, width, height)),
-    };
+    if channels == 3 {
+        warnings.push("an organised cloud: its third channel is taken as z".to_string());
+    }
+    let rows = last_channel_by_rows(data, &header);
+    let pixels = pixels(&rows, sample, header.big_endian, &mut warnings);
     Ok(Image { width, height, pixels, sample: sample.name(), warnings })
 }
 
-/// Column by column to row by row.
-fn transpose<T: Copy>(values: &[T], width: usize, height: usize) -> Vec<T> {
-    (0..height).flat_map(|v| (0..width).map(move |u| values[u * height + v])).collect()
+/// The bytes of the only, or the third, channel, row by row.
+fn last_channel_by_rows<'a>(data: &'a [u8], header: &Header) -> Cow<'a, [u8]> {
+    let (width, height) = (header.columns as usize, header.rows as usize);
+    let (channels, size) = (header.channels as usize, header.sample.bytes());
+    if channels == 1 && !header.fortran {
+        return Cow::Borrowed(data);
+    }
+    let mut rows = Vec::with_capacity(width * height * size);
+    for v in 0..height {
+        for u in 0..width {
+            let c = channels - 1;
+            let at = if header.fortran { (c * width + u) * height + v } else { (v * width + u) * channels + c };
+            rows.extend_from_slice(&data[at * size..][..size]);
+        }
+    }
+    Cow::Owned(rows)
 }

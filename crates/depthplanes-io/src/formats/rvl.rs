@@ -37,7 +37,7 @@ fn size(bytes: &[u8]) -> Option<(u64, u64)> {
 pub(super) fn plausible(bytes: &[u8]) -> bool {
     let side = 1..=16_384;
     bytes.len() >= 12
-        && bytes.len() % 4 == 0
+        && bytes.len().is_multiple_of(4)
         && size(bytes).is_some_and(|(w, h)| side.contains(&w) && side.contains(&h) && backed(w * h, bytes))
 }
 

@@ -182,7 +182,7 @@ pub fn tiff(values: &[u16]) -> Vec<u8> {
 pub fn exr(values: &[u16]) -> Vec<u8> {
     use exr::prelude::*;
     let samples = FlatSamples::F32(values.iter().map(|&value| f32::from(value)).collect());
-    let channels = AnyChannels::sort(smallvec::smallvec![AnyChannel::new("Z", samples)]);
+    let channels = AnyChannels::sort(SmallVec::from_vec(vec![AnyChannel::new("Z", samples)]));
     let layer = Layer::new((WIDTH, HEIGHT), LayerAttributes::named("depth"), Encoding::SMALL_LOSSLESS, channels);
     let mut file = std::io::Cursor::new(Vec::new());
     Image::from_layer(layer).write().non_parallel().to_buffered(&mut file).unwrap();
