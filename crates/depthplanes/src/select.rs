@@ -23,7 +23,8 @@ pub struct Kept {
 pub struct Selection {
     kept: Vec<Kept>,
     label_of_group: Vec<u16>,
-    label_of_run: Vec<u16>,
+    /// Of run i at i + 1, with room to read beyond the end.
+    labels: Vec<u16>,
 }
 
 impl Selection {
@@ -35,7 +36,7 @@ impl Selection {
         self.kept.clear();
         let most_runs = groups.width() * groups.height();
         reserve_to(&mut self.label_of_group, most_runs);
-        reserve_to(&mut self.label_of_run, most_runs + SLACK);
+        reserve_to(&mut self.labels, most_runs + SLACK + 1);
         let found = groups.sizes().iter().filter(|&&size| size > min).count();
         if found > MAX_PLANES {
             return Err(Error::TooManyPlanes { found });
@@ -66,9 +67,10 @@ impl Selection {
         for (label, kept) in (1..).zip(&self.kept) {
             labels[kept.group as usize] = label;
         }
-        self.label_of_run.clear();
-        self.label_of_run.extend(groups.group_of_run().iter().map(|&group| labels[group as usize]));
-        self.label_of_run.resize(groups.run_count() + SLACK, 0);
+        self.labels.clear();
+        self.labels.push(0);
+        self.labels.extend(groups.group_of_run().iter().map(|&group| labels[group as usize]));
+        self.labels.resize(1 + groups.run_count() + SLACK, 0);
     }
 
     /// The kept groups; label 1 is the first.
@@ -78,13 +80,13 @@ impl Selection {
 
     /// For each run of the map in raster order its plane's label, 0 for none.
     pub fn label_of_run(&self) -> &[u16] {
-        &self.label_of_run[..self.label_of_run.len() - SLACK]
+        &self.labels[1..self.labels.len() - SLACK]
     }
 
     /// Writes the label image, row by row, `width * height`.
     pub fn paint(&self, groups: &Groups, labels: &mut Vec<u16>) {
         labels.resize(groups.width() * groups.height(), 0);
-        groups.paint(&self.label_of_run, labels);
+        groups.paint(&self.labels, labels);
     }
 }
 

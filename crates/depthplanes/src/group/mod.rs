@@ -231,12 +231,12 @@ impl Groups {
         &self.group_of_run
     }
 
-    /// Writes an image, `width * height`, in which every pixel of run i is `label_of_run[i]` and
-    /// every missing pixel is 0. `label_of_run` has [`SLACK`] entries to spare at its end.
-    pub(crate) fn paint(&self, label_of_run: &[u16], image: &mut [u16]) {
+    /// Writes an image, `width * height`, in which every pixel of run i, counted from 1, is `labels[i]`
+    /// and every missing pixel is 0. `labels` has [`SLACK`] entries to spare at its end.
+    pub(crate) fn paint(&self, labels: &[u16], image: &mut [u16]) {
         assert_eq!(image.len(), self.width * self.height);
         let paint = |strip: &Strip, part: &mut [u16]| {
-            self.kernel.paint(strip, &label_of_run[strip.first_run as usize..], part);
+            self.kernel.paint(strip, &labels[strip.first_run as usize..], part);
         };
         if let [only] = &self.strips[..] {
             return paint(only, image);

@@ -54,6 +54,7 @@ struct Scratch {
     left_of_row_above: Vec<u64>,
     above: Vec<u64>,
     ends: Vec<u64>,
+    later_contacts: Vec<u64>,
     runs_before: Vec<u32>,
     runs_before_in_row_above: Vec<u32>,
 }
@@ -69,7 +70,8 @@ impl Strip {
             masks.resize(height * words, 0);
         }
         let scratch = &mut self.scratch;
-        for masks in [&mut scratch.left, &mut scratch.left_of_row_above, &mut scratch.above, &mut scratch.ends] {
+        let Scratch { left, left_of_row_above, above, ends, later_contacts, .. } = scratch;
+        for masks in [left, left_of_row_above, above, ends, later_contacts] {
             masks.clear();
             masks.resize(words + 1, 0);
         }
@@ -138,24 +140,27 @@ fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
     let left = &mut scratch.left[..words + 1];
     let ends = &mut scratch.ends[..words];
     let before = &mut scratch.runs_before[..words];
-    let first = strip.parent.len() as u32;
-    let (mut runs, mut pixels, mut valid_left) = (first, 0, 0);
+    let mut valid_left = 0;
     for w in 0..words {
         left[w] &= valid[w] & (valid[w] << 1 | valid_left);
-        valid_left = valid[w] >> 63;
         starts[w] = valid[w] & !left[w];
-        before[w] = runs;
-        runs += starts[w].count_ones();
-        pixels += valid[w].count_ones();
+        valid_left = valid[w] >> 63;
     }
     for w in 0..words {
         ends[w] = valid[w] & !(left[w] >> 1 | left[w + 1] << 63);
     }
+    let first = strip.parent.len() as u32;
+    let (mut runs, mut pixels) = (first, 0);
+    for w in 0..words {
+        before[w] = runs;
+        runs += starts[w].count_ones();
+        pixels += valid[w].count_ones();
+    }
     strip.valid_pixels += pixels as usize;
     strip.row_first_run.push(first);
     strip.parent.extend(first..runs);
-    I::positions(starts, &mut strip.first_column);
-    I::positions(ends, &mut strip.last_column);
+    I::positions(starts, (runs - first) as usize, &mut strip.first_column);
+    I::positions(ends, (runs - first) as usize, &mut strip.last_column);
 }
 
 /// Unites the runs of a row with the runs above that they touch.
@@ -165,25 +170,27 @@ fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
 #[inline(always)]
 fn join_row_above(strip: &mut Strip, row: usize) {
     let words = strip.words;
-    let starts = &strip.starts[row * words..][..words];
-    let starts_above = &strip.starts[(row - 1) * words..][..words];
-    let scratch = &strip.scratch;
-    let left = &scratch.left[..words];
-    let left_above = &scratch.left_of_row_above[..words];
-    let above = &scratch.above[..words];
-    let valid = &strip.valid[row * words..][..words];
-    let valid_above = &strip.valid[(row - 1) * words..][..words];
-    let before = &scratch.runs_before[..words];
-    let before_above = &scratch.runs_before_in_row_above[..words];
+    let here = row * words..(row + 1) * words;
+    let there = (row - 1) * words..row * words;
+    let (starts, starts_above) = (&strip.starts[here.clone()], &strip.starts[there.clone()]);
+    let (valid, valid_above) = (&strip.valid[here], &strip.valid[there]);
+    let scratch = &mut strip.scratch;
+    let (left, left_above) = (&scratch.left[..words], &scratch.left_of_row_above[..words]);
+    let (before, before_above) = (&scratch.runs_before[..words], &scratch.runs_before_in_row_above[..words]);
+    let (contacts, later) = (&mut scratch.above[..words], &mut scratch.later_contacts[..words]);
+    find_contacts(contacts, [valid, valid_above], [left, left_above]);
+    let any_later = split_contacts(contacts, later, left);
     let parent = &mut strip.parent[..];
-    let mut contacts = Contacts::default();
     for w in 0..words {
-        let (mut first, mut later) = contacts.next(above[w] & valid[w] & valid_above[w], left[w], left_above[w]);
+        let mut first = contacts[w];
         while first != 0 {
             let (here, there) = runs_at(first, starts[w], before[w], starts_above[w], before_above[w]);
             parent[here as usize] = parent[there as usize];
             first &= first - 1;
         }
+    }
+    for w in 0..if any_later { words } else { 0 } {
+        let mut later = later[w];
         while later != 0 {
             let (here, there) = runs_at(later, starts[w], before[w], starts_above[w], before_above[w]);
             forest::unite(parent, here, there);
@@ -192,37 +199,45 @@ fn join_row_above(strip: &mut Strip, row: usize) {
     }
 }
 
+/// Of the pixels that are close to the one above, in place those where two runs first touch: both
+/// valid, and without a left neighbour in the same two runs that is linked upwards too.
+#[inline(always)]
+fn find_contacts(close_up: &mut [u64], valid: [&[u64]; 2], left: [&[u64]; 2]) {
+    let mut up_left = 0;
+    for w in 0..close_up.len() {
+        let up = close_up[w] & valid[0][w] & valid[1][w];
+        close_up[w] = up & !((up << 1 | up_left) & left[0][w] & left[1][w]);
+        up_left = up >> 63;
+    }
+}
+
+/// Leaves in `contacts` each run's first and moves the others to `later`; whether there are any.
+///
+/// A run's pixels behind its first are a block of ones in `left`. Adding a one to a block carries
+/// through to its end, so the ones that the sum clears lie behind the contact that was added.
+#[inline(always)]
+fn split_contacts(contacts: &mut [u64], later: &mut [u64], left: &[u64]) -> bool {
+    let (mut contact_left, mut carry, mut any_later) = (0, false, 0);
+    for w in 0..contacts.len() {
+        let behind = (contacts[w] << 1 | contact_left) & left[w];
+        contact_left = contacts[w] >> 63;
+        let (sum, carry_1) = left[w].overflowing_add(behind);
+        let (sum, carry_2) = sum.overflowing_add(carry.into());
+        carry = carry_1 | carry_2;
+        let covered = (left[w] & !sum) | behind;
+        later[w] = contacts[w] & covered;
+        any_later |= later[w];
+        contacts[w] &= !covered;
+    }
+    any_later != 0
+}
+
 /// The runs here and above at the lowest set bit of `contact`: a pixel's run is the number of run
 /// starts up to it.
 #[inline(always)]
 fn runs_at(contact: u64, starts: u64, before: u32, starts_above: u64, before_above: u32) -> (u32, u32) {
     let up_to = contact ^ (contact - 1);
     (before + (starts & up_to).count_ones() - 1, before_above + (starts_above & up_to).count_ones() - 1)
-}
-
-/// Walks a row's words and finds where runs touch the runs above.
-#[derive(Default)]
-struct Contacts {
-    above: u64,
-    contact: u64,
-    flood: bool,
-}
-
-impl Contacts {
-    /// From a word of the masks, the contacts that are the first of their run, and the others.
-    #[inline(always)]
-    fn next(&mut self, above: u64, left: u64, left_above: u64) -> (u64, u64) {
-        // A pixel linked upwards whose left neighbour is too, both being in the same runs, adds nothing.
-        let contact = above & !((above << 1 | self.above) & left & left_above);
-        // Pixels with a contact before them in their run: adding a bit to a block of ones carries
-        // through to its end, so the ones that the sum clears are those behind the added bit.
-        let behind = (contact << 1 | self.contact) & left;
-        let (sum, carry_1) = left.overflowing_add(behind);
-        let (sum, carry_2) = sum.overflowing_add(self.flood.into());
-        let covered = (left & !sum) | behind;
-        (self.above, self.contact, self.flood) = (above >> 63, contact >> 63, carry_1 | carry_2);
-        (contact & !covered, contact & covered)
-    }
 }
 
 /// Unites the runs on both sides of the border between two strips in the map's forest.

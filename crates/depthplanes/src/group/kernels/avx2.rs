@@ -130,11 +130,11 @@ impl Isa for Avx2 {
         unsafe { masks_f32(row, up, rule, out) }
     }
     #[inline(always)]
-    fn positions(mask: &[u64], out: &mut Vec<u16>) {
-        Portable::positions(mask, out);
+    fn positions(mask: &[u64], count: usize, out: &mut Vec<u16>) {
+        Portable::positions(mask, count, out);
     }
     #[inline(always)]
-    fn paint_row(valid: &[u64], starts: &[u64], label_of_run: &[u16], row: &mut [u16]) {
-        Portable::paint_row(valid, starts, label_of_run, row);
+    fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
+        Portable::paint_row(valid, starts, labels, row);
     }
 }

@@ -106,14 +106,14 @@ impl Isa for Avx512 {
         unsafe { masks_f32(row, up, rule, out) }
     }
     #[inline(always)]
-    fn positions(mask: &[u64], out: &mut Vec<u16>) {
+    fn positions(mask: &[u64], count: usize, out: &mut Vec<u16>) {
         // SAFETY: as above.
-        unsafe { positions(mask, out) }
+        unsafe { positions(mask, count, out) }
     }
     #[inline(always)]
-    fn paint_row(valid: &[u64], starts: &[u64], label_of_run: &[u16], row: &mut [u16]) {
+    fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
         // SAFETY: as above.
-        unsafe { paint_row(valid, starts, label_of_run, row) }
+        unsafe { paint_row(valid, starts, labels, row) }
     }
 }
 
@@ -139,54 +139,79 @@ static UP_TO: [u16; 32] = {
     up_to
 };
 
+/// Of a double word in every lane, the byte pairs that put its lower half into lanes 0..16 and its
+/// upper half into the others.
+static OWN_HALF: [u16; 32] = {
+    let mut bytes = [0x0100; 32];
+    let mut i = 16;
+    while i < 32 {
+        bytes[i] = 0x0302;
+        i += 1;
+    }
+    bytes
+};
+
+/// The byte pairs that put its lower half into lanes 16..32, and 0 into the others.
+static LOWER_HALF: [u16; 32] = {
+    let mut bytes = [0x8080; 32];
+    let mut i = 16;
+    while i < 32 {
+        bytes[i] = 0x0100;
+        i += 1;
+    }
+    bytes
+};
+
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi2,popcnt")]
-fn positions(mask: &[u64], out: &mut Vec<u16>) {
-    let count: usize = mask.iter().map(|word| word.count_ones() as usize).sum();
+fn positions(mask: &[u64], count: usize, out: &mut Vec<u16>) {
     assert!(out.capacity() - out.len() >= count + SLACK);
-    // SAFETY: each store writes 32 elements from the first unused one, of which `count_ones` stay;
-    // the room for all of them and 32 more was just checked.
+    // SAFETY: each store writes 32 elements from the first unused one, of which `count_ones` stay.
+    // There is room for `count` and 64 more, and the pointer is held to `count` word by word.
     unsafe {
-        let mut end = out.as_mut_ptr().add(out.len());
-        let mut lane = _mm512_loadu_si512(LANE.as_ptr().cast());
-        for &word in mask {
-            for half in [word as u32, (word >> 32) as u32] {
-                _mm512_storeu_si512(end.cast(), _mm512_maskz_compress_epi16(half, lane));
-                end = end.add(half.count_ones() as usize);
-                lane = _mm512_add_epi16(lane, _mm512_set1_epi16(32));
+        let end = out.as_mut_ptr().add(out.len() + count);
+        let mut next = out.as_mut_ptr().add(out.len());
+        let lanes = _mm512_loadu_si512(LANE.as_ptr().cast());
+        for (first, &word) in (0i16..).step_by(64).zip(mask) {
+            if word == 0 {
+                continue;
             }
+            for (half, first) in [(word as u32, first), ((word >> 32) as u32, first + 32)] {
+                let columns = _mm512_add_epi16(lanes, _mm512_set1_epi16(first));
+                _mm512_storeu_si512(next.cast(), _mm512_maskz_compress_epi16(half, columns));
+                next = next.add(half.count_ones() as usize);
+            }
+            assert!(next <= end, "more bits than counted");
         }
         out.set_len(out.len() + count);
     }
 }
 
-/// The label of a pixel is the entry of `label_of_run` at the number of run starts up to it, counted
-/// within 16 pixels by `vpopcntw`.
+/// The label of a pixel is the entry of the table at the number of run starts up to it, counted
+/// within 16 pixels by `vpopcntw`, and for the upper 16 those of the lower added.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512bitalg,popcnt")]
-fn paint_row(valid: &[u64], starts: &[u64], label_of_run: &[u16], row: &mut [u16]) {
+fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
     let runs: usize = starts.iter().map(|word| word.count_ones() as usize).sum();
-    assert!(label_of_run.len() >= runs + SLACK);
-    // SAFETY: both constants are 64 bytes.
-    let up_to = unsafe { _mm512_loadu_si512(UP_TO.as_ptr().cast()) };
-    let mut begun = 0usize; // runs begun before the block
-    for block in 0..row.len().div_ceil(32) {
-        let shift = block % 2 * 32;
-        let valid = (valid[block / 2] >> shift) as u32;
-        let starts = (starts[block / 2] >> shift) as u32;
-        // The table begins with the run that reaches into the block, if its first pixel starts none.
-        let continues = (starts & 1 == 0) as usize;
-        let table = (begun - continues.min(begun)) as usize;
-        let skipped = (begun - table) as i16; // 1 if the table has that run in front
-        let low = (starts as u16).count_ones() as i16;
-        let bits = _mm512_mask_set1_epi16(_mm512_set1_epi16(starts as i16), 0xFFFF_0000, (starts >> 16) as i16);
-        let base = _mm512_mask_set1_epi16(_mm512_set1_epi16(skipped - 1), 0xFFFF_0000, skipped - 1 + low);
-        let index = _mm512_add_epi16(_mm512_popcnt_epi16(_mm512_and_si512(bits, up_to)), base);
-        let at = block * 32;
+    assert!(labels.len() >= runs + SLACK && valid.len() == starts.len());
+    // SAFETY: all three are 64 bytes.
+    let [up_to, own_half, lower_half] =
+        unsafe { [&UP_TO, &OWN_HALF, &LOWER_HALF].map(|constant| _mm512_loadu_si512(constant.as_ptr().cast())) };
+    let mut begun = 0; // runs begun before the block
+    for at in (0..row.len()).step_by(32) {
+        let valid = (valid[at / 64] >> (at % 64)) as u32;
+        let starts = (starts[at / 64] >> (at % 64)) as u32;
+        // The table is read from the run of the block's first pixel, which leaves 31 others to count.
+        let table = begun + (starts & 1) as usize;
+        let bits = _mm512_set1_epi32((starts & !1) as i32);
+        let index = _mm512_add_epi16(
+            _mm512_popcnt_epi16(_mm512_and_si512(_mm512_shuffle_epi8(bits, own_half), up_to)),
+            _mm512_popcnt_epi16(_mm512_shuffle_epi8(bits, lower_half)),
+        );
         let within = u32::MAX >> (32 - (row.len() - at).min(32));
         // SAFETY: `table + 32 <= runs + SLACK`, checked above; the masked store writes only pixels of the row.
         unsafe {
-            let labels = _mm512_loadu_si512(label_of_run.as_ptr().add(table).cast());
+            let labels = _mm512_loadu_si512(labels.as_ptr().add(table).cast());
             let painted = _mm512_maskz_permutexvar_epi16(valid, index, labels);
             _mm512_mask_storeu_epi16(row.as_mut_ptr().add(at).cast(), within, painted);
         }

@@ -32,12 +32,12 @@ pub trait Isa {
     /// Masks of one row of floating-point values.
     fn masks_f32(row: &[f32], up: &[f32], rule: &LinkRule<f32>, out: RowMasks<'_>);
 
-    /// Appends the positions of the set bits to `out`, which has [`SLACK`] to spare.
-    fn positions(mask: &[u64], out: &mut Vec<u16>);
+    /// Appends the positions of the `count` set bits to `out`, which has [`SLACK`] to spare.
+    fn positions(mask: &[u64], count: usize, out: &mut Vec<u16>);
 
     /// Writes a row of labels: 0 where not valid, else the label of the pixel's run.
-    /// `label_of_run` begins with the row's first run and has [`SLACK`] to spare.
-    fn paint_row(valid: &[u64], starts: &[u64], label_of_run: &[u16], row: &mut [u16]);
+    /// `labels[i]` belongs to the row's run i, counted from 1; there is [`SLACK`] to spare.
+    fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]);
 }
 
 type Scan<T> = unsafe fn(&DepthView<'_, T>, &LinkRule<T>, &mut Strip);
@@ -82,8 +82,8 @@ macro_rules! kernel {
                 strip::stitch::<$isa, T>(map, rule, upper, lower, parent);
             }
             #[target_feature(enable = $features)]
-            fn paint(rows: &strip::Strip, label_of_run: &[u16], image: &mut [u16]) {
-                super::paint_strip::<$isa>(rows, label_of_run, image);
+            fn paint(rows: &strip::Strip, labels: &[u16], image: &mut [u16]) {
+                super::paint_strip::<$isa>(rows, labels, image);
             }
             super::Kernel {
                 name: $name,
@@ -140,9 +140,9 @@ impl Kernel {
         unsafe { (T::compiled(self).stitch)(map, rule, upper, lower, parent) }
     }
 
-    pub(super) fn paint(&self, strip: &Strip, label_of_run: &[u16], image: &mut [u16]) {
+    pub(super) fn paint(&self, strip: &Strip, labels: &[u16], image: &mut [u16]) {
         // SAFETY: as in `scan`.
-        unsafe { (self.paint)(strip, label_of_run, image) }
+        unsafe { (self.paint)(strip, labels, image) }
     }
 }
 
@@ -152,12 +152,12 @@ impl fmt::Debug for Kernel {
     }
 }
 
-/// Writes a strip's part of the label image.
+/// Writes a strip's part of the label image; its run i, counted from 1, has `labels[i]`.
 #[inline(always)]
-fn paint_strip<I: Isa>(strip: &Strip, label_of_run: &[u16], image: &mut [u16]) {
+fn paint_strip<I: Isa>(strip: &Strip, labels: &[u16], image: &mut [u16]) {
     for (row, pixels) in image.chunks_exact_mut(strip.width).enumerate() {
         let words = row * strip.words..(row + 1) * strip.words;
-        let labels = &label_of_run[strip.row_first_run[row] as usize..];
+        let labels = &labels[strip.row_first_run[row] as usize..];
         I::paint_row(&strip.valid[words.clone()], &strip.starts[words], labels, pixels);
     }
 }

@@ -26,9 +26,8 @@ impl Isa for Portable {
     }
 
     #[inline(always)]
-    fn positions(mask: &[u64], out: &mut Vec<u16>) {
+    fn positions(mask: &[u64], count: usize, out: &mut Vec<u16>) {
         let mut end = out.len();
-        let count: usize = mask.iter().map(|word| word.count_ones() as usize).sum();
         out.resize(end + count + 4, 0);
         for (first, &word) in (0u32..).step_by(64).zip(mask) {
             let mut rest = word;
@@ -47,17 +46,17 @@ impl Isa for Portable {
     }
 
     #[inline(always)]
-    fn paint_row(valid: &[u64], starts: &[u64], label_of_run: &[u16], row: &mut [u16]) {
+    fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
         let mut begun = 0;
         for (w, pixels) in row.chunks_mut(64).enumerate() {
             let (valid, starts) = (valid[w], starts[w]);
             if starts == 0 && (valid == 0 || valid == u64::MAX) {
-                pixels.fill(if valid == 0 { 0 } else { label_of_run[begun - 1] });
+                pixels.fill(if valid == 0 { 0 } else { labels[begun] });
                 continue;
             }
             for (bit, pixel) in pixels.iter_mut().enumerate() {
                 begun += (starts >> bit & 1) as usize;
-                *pixel = label_of_run[begun.saturating_sub(1)] & ((valid >> bit & 1) as u16).wrapping_neg();
+                *pixel = labels[begun] & ((valid >> bit & 1) as u16).wrapping_neg();
             }
         }
     }
