@@ -3,7 +3,8 @@
 //! Binary little-endian PLY, which MeshLab, CloudCompare, Open3D and Blender read. Points are in the
 //! optical frame: x right, y down, z forward.
 
-use super::{Output, OutputError, Report, Writer, colour, shade};
+use super::colour::palette;
+use super::{Output, OutputError, Report, Writer, shade};
 use depthplanes::{Measure, with_view};
 
 pub(super) const OUTPUT: Output = Output {
@@ -43,13 +44,14 @@ fn points(report: &Report<'_>) -> Result<Vec<u8>, OutputError> {
     })?;
     let greys = shade::greys(report.frame)?;
     let labels = &report.detection.labels;
+    let palette = palette(report.detection.planes.len());
     let width = report.frame.width;
     let mut bytes = Vec::with_capacity(labels.len() * POINT_BYTES);
     let mut add = |at: usize, value: f64| {
         let Some(z) = sensor.measure.depth_m(value) else { return };
         let ray = camera.ray((at % width) as f64, (at / width) as f64);
         let label = labels[at];
-        let shown = if label == 0 { greys[at] } else { colour(label) };
+        let shown = if label == 0 { greys[at] } else { palette[usize::from(label)] };
         bytes.extend(ray.iter().flat_map(|r| ((r * z) as f32).to_le_bytes()));
         bytes.extend(shown);
         bytes.extend(label.to_le_bytes());

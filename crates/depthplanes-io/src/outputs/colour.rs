@@ -22,6 +22,11 @@ pub fn colour(label: u16) -> [u8; 3] {
     within_gamut(lightness, chroma, hue)
 }
 
+/// The colours of labels `0..=planes`.
+pub(super) fn palette(planes: usize) -> Vec<[u8; 3]> {
+    (0..=planes).map(|label| colour(label as u16)).collect()
+}
+
 /// The colour of that lightness and hue, with as much of the chroma as sRGB can show.
 fn within_gamut(lightness: f64, mut chroma: f64, hue: f64) -> [u8; 3] {
     loop {

@@ -4,8 +4,9 @@
 //! With a legend the picture grows to the right; without, it has exactly the map's size. The scene
 //! itself is never covered, but for the small numbers that the legend refers to.
 
+use super::colour::palette;
 use super::picture::Picture;
-use super::{Output, OutputError, Report, Writer, colour, legend, shade};
+use super::{Output, OutputError, Report, Writer, legend, shade};
 use depthplanes::Detection;
 
 pub(super) const OUTPUT: Output = Output {
@@ -34,7 +35,7 @@ fn picture(report: &Report<'_>) -> Result<Picture, OutputError> {
 }
 
 fn tint_planes(picture: &mut Picture, detection: &Detection) {
-    let palette: Vec<[u8; 3]> = (0..=detection.planes.len()).map(|label| colour(label as u16)).collect();
+    let palette = palette(detection.planes.len());
     for v in 0..detection.height {
         for u in 0..detection.width {
             let at = v * detection.width + u;
