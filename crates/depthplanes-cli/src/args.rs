@@ -9,6 +9,7 @@ mod flags;
 use clap::{Arg, ArgMatches, builder::PossibleValuesParser, value_parser};
 use depthplanes::methods::{self, METHODS, MethodInfo};
 use depthplanes_io::outputs::{OUTPUTS, Output};
+use std::ffi::OsString;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -18,7 +19,7 @@ pub(crate) use flags::Reading;
 /// What the user wants.
 pub(crate) enum Command {
     Detect(Box<Detect>),
-    Inspect { inputs: Vec<String>, reading: Box<Reading>, json: bool },
+    Inspect { inputs: Vec<OsString>, reading: Box<Reading>, json: bool },
     Demo { out_dir: PathBuf },
     Methods,
     Params { method: Option<&'static MethodInfo> },
@@ -31,7 +32,7 @@ pub(crate) enum Command {
 
 /// `depthplanes detect`.
 pub(crate) struct Detect {
-    pub(crate) inputs: Vec<String>,
+    pub(crate) inputs: Vec<OsString>,
     pub(crate) reading: Reading,
     pub(crate) method: &'static MethodInfo,
     /// Parameters given, by flag; also those that the method does not have.
@@ -53,7 +54,7 @@ pub(crate) fn parse() -> Command {
     match name {
         "detect" => Command::Detect(Box::new(detect(matches))),
         "inspect" => Command::Inspect {
-            inputs: strings(matches, "input"),
+            inputs: inputs(matches),
             reading: Box::new(Reading::from_matches(matches)),
             json: matches.get_flag("json"),
         },
@@ -159,7 +160,7 @@ fn running_flags() -> Vec<Arg> {
     let all = [
         flags::count("jobs", "N").default_value("1").help("Inputs worked on at the same time"),
         flags::count("threads", "N").default_value("1").help("Threads for each map; the answer does not depend on it"),
-        flags::count("repeat", "N").help("Measure the detection alone, N times after a warm-up"),
+        flags::count("repeat", "N").help("Measure the detection alone, N times after a warm-up; truest with one job"),
     ];
     all.into_iter().map(|arg| arg.help_heading("Running")).collect()
 }
@@ -190,7 +191,7 @@ fn detect(matches: &ArgMatches) -> Detect {
     let count = |name| *matches.get_one::<usize>(name).expect("it has a default");
     let outputs = OUTPUTS.iter().filter_map(|output| Some((output, path(matches, output.name)?)));
     Detect {
-        inputs: strings(matches, "input"),
+        inputs: inputs(matches),
         reading: Reading::from_matches(matches),
         method: method(matches).expect("it has a default"),
         parameters: flags::parameters_given(matches),
@@ -210,8 +211,8 @@ fn method(matches: &ArgMatches) -> Option<&'static MethodInfo> {
     Some(methods::find(name).expect("the parser accepts only names of the table"))
 }
 
-fn strings(matches: &ArgMatches, id: &str) -> Vec<String> {
-    matches.get_many::<String>(id).into_iter().flatten().cloned().collect()
+fn inputs(matches: &ArgMatches) -> Vec<OsString> {
+    matches.get_many::<OsString>("input").into_iter().flatten().cloned().collect()
 }
 
 fn path(matches: &ArgMatches, id: &str) -> Option<PathBuf> {

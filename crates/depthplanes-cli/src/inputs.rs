@@ -4,6 +4,7 @@ use crate::failure::{Failure, Outcome};
 use crate::natural;
 use depthplanes_io::formats::FORMATS;
 use depthplanes_io::outputs::OUTPUTS;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 /// One input.
@@ -44,7 +45,7 @@ impl Input {
 /// # Errors
 /// A folder without a map, a pattern without a match, standard input asked for twice. A file that
 /// does not exist is found out when it is read.
-pub(crate) fn expand(words: &[String]) -> Outcome<Vec<Input>> {
+pub(crate) fn expand(words: &[OsString]) -> Outcome<Vec<Input>> {
     let mut inputs = Vec::new();
     for word in words {
         inputs.extend(expand_word(word)?);
@@ -55,8 +56,10 @@ pub(crate) fn expand(words: &[String]) -> Outcome<Vec<Input>> {
     Ok(inputs)
 }
 
-fn expand_word(word: &str) -> Outcome<Vec<Input>> {
+/// A word that is no text can only be a path.
+fn expand_word(word: &OsStr) -> Outcome<Vec<Input>> {
     let path = Path::new(word);
+    let word = word.to_str().unwrap_or_default();
     if word == "-" {
         Ok(vec![Input::Standard])
     } else if let Some(spec) = word.strip_prefix("scene:") {

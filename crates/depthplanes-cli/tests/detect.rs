@@ -241,3 +241,15 @@ fn a_closed_pipe_is_quiet() {
     let ran = Ran::from(bench.command_of("bash").args(["-c", &script]).output().unwrap());
     assert_eq!((ran.code, ran.err.as_str()), (Some(0), ""), "{ran:?}");
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_name_need_not_be_text() {
+    use std::os::unix::ffi::OsStrExt;
+    let bench = Bench::new("not_text");
+    let name = std::ffi::OsStr::from_bytes(b"m\xe4p.pgm");
+    std::fs::write(bench.folder.join(name), two_planes(1003)).unwrap();
+    let command = &mut bench.command();
+    let record = json(&Ran::from(command.args(["detect", "--json"]).arg(name).output().unwrap()).ok());
+    assert_eq!(record["planes"].as_array().unwrap().len(), 2);
+}

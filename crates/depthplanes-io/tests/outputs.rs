@@ -229,3 +229,20 @@ fn a_link_to_an_input_is_that_input_and_a_link_as_output_stays_a_link() {
     assert_eq!(std::fs::read(&input).unwrap(), b"new");
     outputs::write_file(Path::new("/dev/null"), b"gone").unwrap();
 }
+
+#[test]
+fn the_schema_page_names_every_field_and_column() {
+    let page =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/planes-schema.md")).unwrap();
+    assert!(page.contains(&outputs::CSV_COLUMNS.join(",")));
+    let (frame, detection) = (frame(), detection());
+    let times = Times::default();
+    let line = outputs::json_line(&Report { times: Some(&times), ..report(&frame, &detection) });
+    let record: serde_json::Value = serde_json::from_str(&line).unwrap();
+    let plane = &record["planes"][0];
+    let keys = |value: &serde_json::Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+    let metric = keys(&plane["metric"]).into_iter().map(|key| format!("metric.{key}"));
+    for key in keys(&record).into_iter().chain(keys(plane)).chain(metric) {
+        assert!(page.contains(&format!("`{key}`")), "{key}");
+    }
+}

@@ -5,6 +5,7 @@ use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use depthplanes::methods::{METHODS, Param};
 use depthplanes_io::encoding::ENCODINGS;
 use depthplanes_io::presets::SENSOR_PRESETS;
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// How the inputs are to be read, as given.
@@ -50,7 +51,8 @@ impl Reading {
 }
 
 pub(super) fn inputs() -> Arg {
-    Arg::new("input").value_name("INPUT").required(true).num_args(1..).help(
+    let input = Arg::new("input").value_name("INPUT").required(true).num_args(1..);
+    input.value_parser(value_parser!(OsString)).help(
         "Files, folders (all their maps, in natural order), patterns such as 'maps/*.png', \
          - for standard input, or scene:SPEC for a made-up scene",
     )
@@ -92,7 +94,8 @@ fn method_parameter(name: &'static str) -> Arg {
     for method in METHODS {
         owners.extend(method.params.iter().filter(|param| param.name == name).map(|param| (method.name, param)));
     }
-    let alike = owners.iter().all(|(_, param)| param.meaning == owners[0].1.meaning);
+    let said = |param: &Param| (param.meaning, param.unit, param.default);
+    let alike = owners.iter().all(|(_, param)| said(param) == said(owners[0].1));
     let shown = if alike { &owners[..1] } else { &owners[..] };
     let sentence = |(method, param): &(&str, &Param)| {
         let whose = if alike { String::new() } else { format!("{method}: ") };
@@ -133,11 +136,14 @@ pub(super) fn switch(id: &'static str, help: &'static str) -> Arg {
     Arg::new(id).long(id).action(ArgAction::SetTrue).help(help)
 }
 
-/// A flag that takes a whole number, 1 and up.
+/// More inputs at once, threads, runs or rows than anybody means.
+const MOST: usize = 1_000_000;
+
+/// A flag that takes a whole number from 1 to [`MOST`].
 pub(super) fn count(id: &'static str, value: &'static str) -> Arg {
     Arg::new(id).long(id).value_name(value).value_parser(|text: &str| match text.parse::<usize>() {
-        Ok(number) if number >= 1 => Ok(number),
-        _ => Err("accepted: a whole number from 1 up".to_string()),
+        Ok(number) if (1..=MOST).contains(&number) => Ok(number),
+        _ => Err(format!("accepted: a whole number from 1 to {MOST}")),
     })
 }
 

@@ -6,6 +6,7 @@ use crate::{inputs, load};
 use depthplanes_io::inspect::{Summary, summary};
 use depthplanes_io::{Frame, ReadOptions};
 use serde_json::json;
+use std::ffi::OsString;
 use std::io::Write;
 
 /// Bars of the histogram.
@@ -13,7 +14,7 @@ const BARS: usize = 16;
 /// Longest bar, characters.
 const BAR_WIDTH: usize = 40;
 
-pub(super) fn run(words: &[String], reading: &Reading, as_json: bool, out: &mut dyn Write) -> Outcome {
+pub(super) fn run(words: &[OsString], reading: &Reading, as_json: bool, out: &mut dyn Write) -> Outcome {
     let inputs = inputs::expand(words)?;
     let options = load::options(reading)?;
     let mut failed = 0;

@@ -85,9 +85,15 @@ fn rows_that_fit(picture_height: usize, scale: usize) -> usize {
     (picture_height.saturating_sub(2 * margin(scale)) / row_height(scale)).max(FEWEST_ROWS)
 }
 
+/// How many planes have a row; where not all fit, the last row counts the others.
+fn planes_named(fitting: usize, detection: &Detection) -> usize {
+    let planes = detection.planes.len();
+    if planes > fitting { fitting - 1 } else { planes }
+}
+
 fn rows(fitting: usize, detection: &Detection) -> Vec<Row> {
     let planes = &detection.planes;
-    let named = if planes.len() > fitting { fitting - 1 } else { planes.len() };
+    let named = planes_named(fitting, detection);
     let mut rows: Vec<Row> = planes[..named].iter().map(row).collect();
     if named < planes.len() {
         let more = format!("+{} more", planes.len() - named);
@@ -108,7 +114,7 @@ fn row(plane: &Plane) -> Row {
 /// Writes the labels that the legend names onto their planes, where there is room.
 pub(super) fn number_planes(picture: &mut Picture, detection: &Detection) {
     let scale = letter_scale(picture.height);
-    let named = rows_that_fit(picture.height, scale).min(detection.planes.len());
+    let named = planes_named(rows_that_fit(picture.height, scale), detection);
     let anchors = anchors(detection, named);
     let mut written: Vec<Area> = Vec::new();
     for (plane, anchor) in detection.planes[..named].iter().zip(anchors) {
