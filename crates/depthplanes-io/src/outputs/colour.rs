@@ -2,7 +2,8 @@
 //!
 //! Hues advance by the golden angle in OKLCH (Ottosson 2020), which spreads any first few labels
 //! evenly over the circle. Labels whose hues come close again are 8, 13, 21 .. numbers apart
-//! (Fibonacci); a lightness with period 3 tells those of 8 and 13 apart.
+//! (Fibonacci). Three tones in turn tell those of 8 and 13 apart, and every second 21 labels are
+//! darker.
 
 /// 360 degrees over the square of the golden ratio.
 const GOLDEN_ANGLE_DEG: f64 = 137.507_764_050_037_85;
@@ -10,16 +11,21 @@ const GOLDEN_ANGLE_DEG: f64 = 137.507_764_050_037_85;
 const FIRST_HUE_DEG: f64 = 255.0;
 /// Lightness and chroma, repeating.
 const TONES: [(f64, f64); 3] = [(0.68, 0.17), (0.83, 0.15), (0.56, 0.18)];
+/// After so many labels hues and tones come close to those of the first.
+const TURN: usize = 21;
+/// How much darker every second turn is.
+const DARKER: f64 = 0.07;
 
 /// The colour of a label in overlays and clouds, sRGB. Label 0, no plane, is black.
 pub fn colour(label: u16) -> [u8; 3] {
     if label == 0 {
         return [0; 3];
     }
-    let step = f64::from(label - 1);
-    let hue = (FIRST_HUE_DEG + step * GOLDEN_ANGLE_DEG).to_radians();
-    let (lightness, chroma) = TONES[usize::from(label - 1) % TONES.len()];
-    within_gamut(lightness, chroma, hue)
+    let step = usize::from(label - 1);
+    let hue = (FIRST_HUE_DEG + step as f64 * GOLDEN_ANGLE_DEG).to_radians();
+    let (lightness, chroma) = TONES[step % TONES.len()];
+    let darker = DARKER * (step / TURN % 2) as f64;
+    within_gamut(lightness - darker, chroma, hue)
 }
 
 /// The colours of labels `0..=planes`.
@@ -66,11 +72,11 @@ mod tests {
     }
 
     #[test]
-    fn the_first_sixteen_labels_are_well_apart() {
-        for a in 1..=16 {
-            for b in 1..a {
+    fn the_first_labels_are_well_apart() {
+        for (labels, least) in [(20, 40.0), (42, 15.0)] {
+            for (a, b) in (1..=labels).flat_map(|a| (1..a).map(move |b| (a, b))) {
                 let apart = distance(colour(a), colour(b));
-                assert!(apart > 40.0, "labels {a} and {b}: {:?} {:?}, {apart:.0} apart", colour(a), colour(b));
+                assert!(apart > least, "labels {a} and {b}: {:?} {:?}, {apart:.0} apart", colour(a), colour(b));
             }
         }
     }
