@@ -120,11 +120,12 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
     }
     let meaning = (encoding.apply)(&mut image, &Given { scale: options.scale, stereo: options.stereo })?;
     let intrinsics = camera(options, preset, &mut image)?;
+    let missing = missing(options, &image)?.or(preset.and_then(|preset| preset.missing)).or(encoding.missing);
     let mut frame = Frame {
         width: image.width,
         height: image.height,
+        missing: missing.filter(|value| storable(&image.pixels, *value)),
         pixels: image.pixels,
-        missing: options.missing.or(preset.and_then(|preset| preset.missing)).or(encoding.missing),
         valid_range: options.valid_range.or(meaning.valid_range),
         sensor: Sensor { measure: meaning.measure, intrinsics },
         format: format.name,
@@ -137,6 +138,28 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
         frame.warnings.extend(traps);
     }
     Ok(frame)
+}
+
+/// Whether a pixel can be `value` at all.
+fn storable(pixels: &Pixels, value: f64) -> bool {
+    let most = match pixels {
+        Pixels::U8(_) => f64::from(u8::MAX),
+        Pixels::U16(_) => f64::from(u16::MAX),
+        Pixels::F32(_) => return value.is_finite(),
+    };
+    value.fract() == 0.0 && (0.0..=most).contains(&value)
+}
+
+/// The user's value for "missing", which must be one that a pixel can have.
+fn missing(options: &ReadOptions, image: &Image) -> Result<Option<f64>> {
+    match options.missing {
+        Some(value) if !storable(&image.pixels, value) => {
+            let accepted =
+                format!("a value that a {} pixel can have; 0, NaN and infinities are missing anyway", image.sample);
+            Err(Error::parameter("--missing", value, accepted))
+        }
+        value => Ok(value),
+    }
 }
 
 fn swap_bytes(image: &mut Image) -> Result<()> {

@@ -108,6 +108,9 @@ fn options_that_contradict_are_refused() {
     for scale in [0.0, -1.0, f64::NAN, f64::INFINITY, 5e-324] {
         refused(ReadOptions { scale: Some(scale), ..named("tum") });
     }
+    for missing in [65_536.0, -1.0, 0.5, f64::NAN] {
+        refused(ReadOptions { missing: Some(missing), ..Default::default() });
+    }
     refused(ReadOptions { valid_range: Some((5.0, 4.0)), ..Default::default() });
     refused(ReadOptions { stereo: Some(Stereo { baseline_m: 0.0, ..RIG }), ..Default::default() });
     let camera = depthplanes::Intrinsics { fx: 500.0, fy: 500.0, cx: 320.0, cy: 240.0 };

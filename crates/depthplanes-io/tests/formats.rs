@@ -254,3 +254,25 @@ fn unsupported_files_are_named() {
     assert!(wrong(b"").contains("no bytes"));
     assert!(wrong(&[7; 70]).contains("--raw-size"));
 }
+
+#[test]
+fn limits_hold_for_every_format() {
+    use depthplanes_io::formats::Limits;
+    let refused = |bytes: &[u8], limits: Limits| {
+        let options = DecodeOptions { limits, ..Default::default() };
+        matches!(decode(bytes, &options), Err(Error::Limit { .. }))
+    };
+    for (name, kind, bytes) in valid_files() {
+        let few = Limits { max_pixels: WIDTH * HEIGHT - 1, ..Default::default() };
+        assert!(refused(&bytes, few), "{name} {kind}");
+        let short = Limits { max_bytes: bytes.len() - 1, ..Default::default() };
+        assert!(refused(&bytes, short), "{name} {kind}");
+    }
+    // 4 million zeros pack into a few thousand bytes.
+    let zeros = png(2000, 2000, ColorType::Grayscale, BitDepth::Eight, &vec![0; 4_000_000]);
+    assert!(zeros.len() < 20_000 && read(&zeros).is_ok());
+    assert!(refused(&zeros, Limits { max_bytes: 1 << 20, ..Default::default() }));
+    let array = zip(&[("a.npy", npy("|u1", false, "(2000, 2000)", &vec![0; 4_000_000]))], true);
+    assert!(array.len() < 20_000 && read(&array).is_ok());
+    assert!(refused(&array, Limits { max_bytes: 1 << 20, ..Default::default() }));
+}
