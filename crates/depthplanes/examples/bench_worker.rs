@@ -4,7 +4,8 @@
 //! `bench_worker WIDTH HEIGHT TYPE THETA MIN THREADS KERNEL FILE`: FILE holds raw little-endian
 //! pixels, TYPE is u8, u16 or f32, KERNEL is a kernel's name or `best`. Commands on stdin, one a
 //! line, answered by one line: `detect` (nanoseconds of group + select + labels), `copy`
-//! (nanoseconds of a copy of the frame), `labels FILE` (writes the label image, raw u16).
+//! (nanoseconds of a copy of the frame), `stages` (the three times of `detect`), `runs` (how many
+//! runs the frame has), `labels FILE` (writes the label image, raw u16).
 
 use depthplanes::group::{Grouper, Kernel, LinkRule, kernels};
 use depthplanes::select::Selection;
@@ -80,6 +81,7 @@ fn serve<T: Pixel>(job: &Job, pixels: Vec<T>) -> Result<(), Box<dyn std::error::
                 selection.paint(groups, &mut labels);
                 println!("{:?} {:?} {:?}", grouped, selected - grouped, start.elapsed() - selected);
             }
+            ("runs", _) => println!("{}", grouper.groups().run_count()),
             ("labels", file) => {
                 let bytes: Vec<u8> = labels.iter().flat_map(|label| label.to_le_bytes()).collect();
                 std::fs::write(file, bytes)?;
