@@ -1,2 +1,23 @@
-//! The program `depthplanes`.
-fn main() {}
+//! The program `depthplanes`: planes from depth and disparity maps, on the command line.
+
+mod args;
+mod commands;
+mod failure;
+mod inputs;
+mod load;
+mod natural;
+mod pool;
+mod run;
+mod show;
+mod table;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let command = args::parse();
+    let mut out = std::io::BufWriter::new(std::io::stdout());
+    let outcome = commands::run(&command, &mut out);
+    let flushed = out.flush().map_err(failure::Failure::from);
+    failure::exit_code(outcome.and(flushed))
+}

@@ -10,6 +10,7 @@ pub mod error;
 pub mod formats;
 mod frame;
 pub mod inspect;
+pub mod outputs;
 pub mod presets;
 pub mod read;
 

@@ -152,6 +152,7 @@ impl MethodInfo {
             })?;
             values[at] = value;
         }
+        self.check(&values)?; // Before `build` turns them into whole numbers.
         (self.build)(&values)
     }
 

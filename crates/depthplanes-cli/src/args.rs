@@ -1,0 +1,228 @@
+//! The command line: the only file that knows the argument parser (with args/ for its longer parts).
+//!
+//! In: the words after `depthplanes`. Out: a [`Command`] of plain values. The flags of methods,
+//! outputs, encodings and presets come from the libraries' tables, so that a new row there is a new
+//! flag here.
+
+mod flags;
+
+use clap::{Arg, ArgMatches, builder::PossibleValuesParser, value_parser};
+use depthplanes::methods::{self, METHODS, MethodInfo};
+use depthplanes_io::outputs::{OUTPUTS, Output};
+use std::ffi::OsString;
+use std::io::Write;
+use std::path::PathBuf;
+
+pub(crate) use clap_complete::Shell;
+pub(crate) use flags::Reading;
+
+/// What the user wants.
+pub(crate) enum Command {
+    Detect(Box<Detect>),
+    Inspect { inputs: Vec<OsString>, reading: Box<Reading>, json: bool },
+    Demo { out_dir: PathBuf },
+    Methods,
+    Params { method: Option<&'static MethodInfo> },
+    Formats,
+    Encodings,
+    Presets,
+    Completions { shell: Shell },
+    Man { out_dir: Option<PathBuf> },
+}
+
+/// `depthplanes detect`.
+pub(crate) struct Detect {
+    pub(crate) inputs: Vec<OsString>,
+    pub(crate) reading: Reading,
+    pub(crate) method: &'static MethodInfo,
+    /// Parameters given, by flag; also those that the method does not have.
+    pub(crate) parameters: Vec<(&'static str, f64)>,
+    pub(crate) outputs: Vec<(&'static Output, PathBuf)>,
+    pub(crate) out_dir: Option<PathBuf>,
+    pub(crate) legend: bool,
+    pub(crate) json: bool,
+    pub(crate) rows: usize,
+    pub(crate) repeat: usize,
+    pub(crate) jobs: usize,
+    pub(crate) threads: usize,
+}
+
+/// Parses the command line; on wrong use, or where help is asked for, it prints and exits.
+pub(crate) fn parse() -> Command {
+    let matches = program().get_matches();
+    let (name, matches) = matches.subcommand().expect("a command is required");
+    match name {
+        "detect" => Command::Detect(Box::new(detect(matches))),
+        "inspect" => Command::Inspect {
+            inputs: inputs(matches),
+            reading: Box::new(Reading::from_matches(matches)),
+            json: matches.get_flag("json"),
+        },
+        "demo" => Command::Demo { out_dir: path(matches, "out-dir").expect("it has a default") },
+        "methods" => Command::Methods,
+        "params" => Command::Params { method: method(matches) },
+        "formats" => Command::Formats,
+        "encodings" => Command::Encodings,
+        "presets" => Command::Presets,
+        "completions" => Command::Completions { shell: *matches.get_one("shell").expect("it is required") },
+        "man" => Command::Man { out_dir: path(matches, "out-dir") },
+        other => unreachable!("no command `{other}`"),
+    }
+}
+
+/// Writes the completion script for a shell.
+pub(crate) fn completions(shell: Shell, out: &mut dyn Write) {
+    clap_complete::generate(shell, &mut program(), "depthplanes", &mut &mut *out);
+}
+
+/// The manual pages, one for the program and one for each command: (file name, contents).
+pub(crate) fn man_pages() -> std::io::Result<Vec<(String, Vec<u8>)>> {
+    let mut program = program().disable_help_subcommand(true);
+    program.build();
+    let mut pages = vec![program.clone()];
+    pages.extend(program.get_subcommands().map(|command| {
+        let name = command.get_display_name().unwrap_or(command.get_name()).to_string();
+        command.clone().name(name)
+    }));
+    let page = |command: clap::Command| {
+        let mut bytes = Vec::new();
+        let man = clap_mangen::Man::new(command);
+        man.render(&mut bytes).map(|()| (man.get_filename(), bytes))
+    };
+    pages.into_iter().map(page).collect()
+}
+
+const EXIT_CODES: &str = "Exit codes:
+  0    done
+  1    something went wrong while processing or writing
+  2    wrong use or wrong input: usage, an unreadable file, a parameter out of range;
+       of many inputs the good ones are done all the same";
+
+fn program() -> clap::Command {
+    clap::Command::new("depthplanes")
+        .version(env!("CARGO_PKG_VERSION"))
+        .about("Finds planes in depth and disparity maps.")
+        .after_help(format!(
+            "First steps:\n  depthplanes demo                       a made-up scene through the whole pipeline\n  \
+             depthplanes inspect map.png            what is in a file, and how to read it\n  \
+             depthplanes detect map.png             the planes of a map\n\n{EXIT_CODES}"
+        ))
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommands([
+            detect_command(),
+            inspect_command(),
+            demo_command(),
+            clap::Command::new("methods").about("Lists the methods"),
+            clap::Command::new("params")
+                .about("Lists the parameters of the methods: default, unit, range, meaning")
+                .arg(method_arg("method").help("Only this method's")),
+            clap::Command::new("formats").about("Lists the file formats that can be read"),
+            clap::Command::new("encodings").about("Lists what a file's numbers can mean"),
+            clap::Command::new("presets").about("Lists the sensors whose encoding and camera are known"),
+            completions_command(),
+            clap::Command::new("man")
+                .about("Prints the manual page, or writes all of them to a folder")
+                .arg(flags::path("out-dir", "DIR").help("Write one page for each command into this folder")),
+        ])
+}
+
+fn detect_command() -> clap::Command {
+    clap::Command::new("detect")
+        .about("Finds the planes of depth or disparity maps; without an output flag it prints a table")
+        .after_help(EXIT_CODES)
+        .arg(flags::inputs())
+        .args(flags::reading())
+        .arg(method_arg("method").long("method").default_value(METHODS[0].name).help("How to look for planes"))
+        .args(flags::method_parameters())
+        .args(output_flags())
+        .args(running_flags())
+}
+
+fn output_flags() -> Vec<Arg> {
+    let flag = |output: &'static Output| {
+        let help = format!("Write the {} ({})", output.about, output.extensions());
+        flags::path(output.name, "FILE").help(help).help_heading("Output")
+    };
+    let mut all: Vec<Arg> = OUTPUTS.iter().map(flag).collect();
+    let names: Vec<String> = OUTPUTS.iter().map(|output| output.file.to_string()).collect();
+    let out_dir = format!("Write all outputs of each input into this folder, as INPUT.{}", names.join(", INPUT."));
+    all.extend([
+        flags::path("out-dir", "DIR").help(out_dir).help_heading("Output"),
+        flags::switch("legend", "Put a legend beside the overlay and numbers on its planes").help_heading("Output"),
+        flags::switch("json", "Print the record as JSON; one line for each of several inputs").help_heading("Output"),
+        flags::count("rows", "N").default_value("20").help("Planes in the printed table").help_heading("Output"),
+    ]);
+    all
+}
+
+fn running_flags() -> Vec<Arg> {
+    let all = [
+        flags::count("jobs", "N").default_value("1").help("Inputs worked on at the same time"),
+        flags::count("threads", "N").default_value("1").help("Threads for each map; the answer does not depend on it"),
+        flags::count("repeat", "N").help("Measure the detection alone, N times after a warm-up; truest with one job"),
+    ];
+    all.into_iter().map(|arg| arg.help_heading("Running")).collect()
+}
+
+fn inspect_command() -> clap::Command {
+    clap::Command::new("inspect")
+        .about("Says what is in a file: values, likely encoding, what to try")
+        .arg(flags::inputs())
+        .args(flags::reading())
+        .arg(flags::switch("json", "Print a JSON line for each input"))
+}
+
+fn demo_command() -> clap::Command {
+    let folder = flags::path("out-dir", "DIR").default_value("depthplanes-demo").help("Where the files go");
+    clap::Command::new("demo").about("Runs a made-up scene through the whole pipeline").arg(folder)
+}
+
+fn completions_command() -> clap::Command {
+    let shell = Arg::new("shell").required(true).value_parser(value_parser!(Shell));
+    clap::Command::new("completions").about("Prints the completion script for a shell").arg(shell)
+}
+
+fn method_arg(id: &'static str) -> Arg {
+    Arg::new(id).value_name("METHOD").value_parser(PossibleValuesParser::new(METHODS.iter().map(|method| method.name)))
+}
+
+fn detect(matches: &ArgMatches) -> Detect {
+    let count = |name| *matches.get_one::<usize>(name).expect("it has a default");
+    let outputs = OUTPUTS.iter().filter_map(|output| Some((output, path(matches, output.name)?)));
+    Detect {
+        inputs: inputs(matches),
+        reading: Reading::from_matches(matches),
+        method: method(matches).expect("it has a default"),
+        parameters: flags::parameters_given(matches),
+        outputs: outputs.collect(),
+        out_dir: path(matches, "out-dir"),
+        legend: matches.get_flag("legend"),
+        json: matches.get_flag("json"),
+        rows: count("rows"),
+        repeat: matches.get_one("repeat").copied().unwrap_or(0),
+        jobs: count("jobs"),
+        threads: count("threads"),
+    }
+}
+
+fn method(matches: &ArgMatches) -> Option<&'static MethodInfo> {
+    let name = matches.get_one::<String>("method")?;
+    Some(methods::find(name).expect("the parser accepts only names of the table"))
+}
+
+fn inputs(matches: &ArgMatches) -> Vec<OsString> {
+    matches.get_many::<OsString>("input").into_iter().flatten().cloned().collect()
+}
+
+fn path(matches: &ArgMatches, id: &str) -> Option<PathBuf> {
+    matches.get_one::<PathBuf>(id).cloned()
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_command_line_is_consistent() {
+        super::program().debug_assert();
+    }
+}

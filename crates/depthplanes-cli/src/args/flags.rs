@@ -1,0 +1,176 @@
+//! Flags that several commands share, and those that come from the libraries' tables.
+
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{Arg, ArgAction, ArgMatches, value_parser};
+use depthplanes::methods::{METHODS, Param};
+use depthplanes_io::encoding::ENCODINGS;
+use depthplanes_io::presets::SENSOR_PRESETS;
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+/// How the inputs are to be read, as given.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Reading {
+    pub(crate) encoding: Option<String>,
+    pub(crate) preset: Option<String>,
+    pub(crate) scale: Option<f64>,
+    pub(crate) intrinsics: Option<[f64; 4]>,
+    pub(crate) camera: Option<PathBuf>,
+    pub(crate) disparity: bool,
+    pub(crate) swap_bytes: bool,
+    pub(crate) baseline: Option<f64>,
+    pub(crate) focal: Option<f64>,
+    pub(crate) doffs: Option<f64>,
+    pub(crate) missing: Option<f64>,
+    pub(crate) valid_range: Option<[f64; 2]>,
+    pub(crate) raw_size: Option<(usize, usize)>,
+    pub(crate) member: Option<String>,
+}
+
+impl Reading {
+    pub(super) fn from_matches(matches: &ArgMatches) -> Self {
+        let number = |id| matches.get_one::<f64>(id).copied();
+        let text = |id| matches.get_one::<String>(id).cloned();
+        Reading {
+            encoding: text("encoding"),
+            preset: text("preset"),
+            scale: number("scale"),
+            intrinsics: matches.get_one("intrinsics").copied(),
+            camera: matches.get_one("camera").cloned(),
+            disparity: matches.get_flag("disparity"),
+            swap_bytes: matches.get_flag("swap-bytes"),
+            baseline: number("baseline"),
+            focal: number("focal"),
+            doffs: number("doffs"),
+            missing: number("missing"),
+            valid_range: matches.get_one("valid-range").copied(),
+            raw_size: matches.get_one("raw-size").copied(),
+            member: text("member"),
+        }
+    }
+}
+
+pub(super) fn inputs() -> Arg {
+    let input = Arg::new("input").value_name("INPUT").required(true).num_args(1..);
+    input.value_parser(value_parser!(OsString)).help(
+        "Files, folders (all their maps, in natural order), patterns such as 'maps/*.png', \
+         - for standard input, or scene:SPEC for a made-up scene",
+    )
+}
+
+pub(super) fn reading() -> Vec<Arg> {
+    let encodings = ENCODINGS.iter().map(|encoding| PossibleValue::new(encoding.name).aliases(encoding.aliases));
+    let presets = PossibleValuesParser::new(SENSOR_PRESETS.iter().map(|preset| preset.name));
+    let listed = |arg: Arg| arg.hide_possible_values(true);
+    let all = [
+        listed(Arg::new("encoding").value_parser(PossibleValuesParser::new(encodings)).value_name("NAME"))
+            .help("What the numbers mean; `depthplanes encodings` lists the names"),
+        listed(Arg::new("preset").value_parser(presets).value_name("SENSOR"))
+            .help("Encoding and camera of a known sensor; `depthplanes presets` lists the names"),
+        number("scale", "UNITS_PER_METRE")
+            .help("Map units in a metre, or what `depthplanes encodings` states as the encoding's scale"),
+        numbers::<4>("intrinsics", "FX,FY,CX,CY").help("Focal lengths and principal point, pixels"),
+        path("camera", "FILE").help("Camera file: ROS, Open3D, BOP, KITTI, Middlebury and others"),
+        switch("disparity", "The numbers are disparities; with --focal and --baseline they become metric"),
+        switch("swap-bytes", "Swap the two bytes of 16-bit samples"),
+        number("baseline", "METRES").help("Baseline of the stereo rig"),
+        number("focal", "PIXELS").help("Focal length of the stereo rig"),
+        number("doffs", "PIXELS").help("Difference of the two principal points (Middlebury's doffs)"),
+        number("missing", "VALUE").help("A value that means `missing`, beside 0, NaN and the infinities"),
+        numbers::<2>("valid-range", "LO,HI").help("Only values within this range, in map units, are valid"),
+        Arg::new("raw-size").value_name("WxH").value_parser(size).help("Size of a headerless file"),
+        Arg::new("member").value_name("NAME").help("The array to read from a file that holds several"),
+    ];
+    all.into_iter().map(|arg| with_long_name(arg).help_heading("Reading")).collect()
+}
+
+/// A flag for each parameter of any method; methods share the flags of the names they share.
+pub(super) fn method_parameters() -> Vec<Arg> {
+    parameter_names().into_iter().map(method_parameter).collect()
+}
+
+fn method_parameter(name: &'static str) -> Arg {
+    let mut owners: Vec<(&str, &Param)> = Vec::new();
+    for method in METHODS {
+        owners.extend(method.params.iter().filter(|param| param.name == name).map(|param| (method.name, param)));
+    }
+    let said = |param: &Param| (param.meaning, param.unit, param.default);
+    let alike = owners.iter().all(|(_, param)| said(param) == said(owners[0].1));
+    let shown = if alike { &owners[..1] } else { &owners[..] };
+    let sentence = |(method, param): &(&str, &Param)| {
+        let whose = if alike { String::new() } else { format!("{method}: ") };
+        format!("{whose}{} [{}, default {}]", param.meaning, param.unit, param.default)
+    };
+    let help: Vec<String> = shown.iter().map(sentence).collect();
+    number(name, "NUMBER").long(flag_name(name)).help(help.join(" ")).help_heading("Method parameters")
+}
+
+/// The parameters given on the command line, whichever method has them.
+pub(super) fn parameters_given(matches: &ArgMatches) -> Vec<(&'static str, f64)> {
+    let given = |name: &'static str| Some((name, *matches.get_one::<f64>(name)?));
+    parameter_names().into_iter().filter_map(given).collect()
+}
+
+/// Each name once, in the order of the tables.
+fn parameter_names() -> Vec<&'static str> {
+    let mut names = Vec::new();
+    for param in METHODS.iter().flat_map(|method| method.params) {
+        if !names.contains(&param.name) {
+            names.push(param.name);
+        }
+    }
+    names
+}
+
+fn flag_name(parameter: &str) -> String {
+    parameter.replace('_', "-")
+}
+
+/// A flag that takes a path.
+pub(super) fn path(id: &'static str, value: &'static str) -> Arg {
+    Arg::new(id).long(id).value_name(value).value_parser(value_parser!(PathBuf))
+}
+
+/// A flag without a value.
+pub(super) fn switch(id: &'static str, help: &'static str) -> Arg {
+    Arg::new(id).long(id).action(ArgAction::SetTrue).help(help)
+}
+
+/// More inputs at once, threads, runs or rows than anybody means.
+const MOST: usize = 1_000_000;
+
+/// A flag that takes a whole number from 1 to [`MOST`].
+pub(super) fn count(id: &'static str, value: &'static str) -> Arg {
+    Arg::new(id).long(id).value_name(value).value_parser(|text: &str| match text.parse::<usize>() {
+        Ok(number) if (1..=MOST).contains(&number) => Ok(number),
+        _ => Err(format!("accepted: a whole number from 1 to {MOST}")),
+    })
+}
+
+fn number(id: &'static str, value: &'static str) -> Arg {
+    Arg::new(id).value_name(value).allow_hyphen_values(true).value_parser(parse_number)
+}
+
+fn numbers<const N: usize>(id: &'static str, value: &'static str) -> Arg {
+    Arg::new(id).value_name(value).allow_hyphen_values(true).value_parser(|text: &str| {
+        let parts = text.split(',').map(parse_number).collect::<Result<Vec<f64>, _>>()?;
+        let given = parts.len();
+        <[f64; N]>::try_from(parts)
+            .map_err(|_| format!("accepted: {N} numbers with commas between; {given} were given"))
+    })
+}
+
+fn parse_number(text: &str) -> Result<f64, String> {
+    text.trim().parse().map_err(|_| format!("`{text}` is not a number; accepted: numbers such as 2, 0.5 or 1e-3"))
+}
+
+fn size(text: &str) -> Result<(usize, usize), String> {
+    let parts = text.split_once(['x', 'X']);
+    let parsed = parts.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
+    parsed.ok_or_else(|| "accepted: columns and rows, such as 640x480".to_string())
+}
+
+fn with_long_name(arg: Arg) -> Arg {
+    let id = arg.get_id().to_string();
+    arg.long(id)
+}

@@ -1,0 +1,58 @@
+//! `depthplanes demo`: a made-up scene through the whole pipeline, into files to look at.
+
+use super::make_folder;
+use crate::failure::Outcome;
+use crate::run::{Recipe, Runner};
+use crate::{load, show};
+use depthplanes::methods::METHODS;
+use depthplanes_io::outputs::{self, OUTPUTS, Output, Report};
+use depthplanes_io::{Frame, Pixels};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// A furnished room without noise, in millimetres.
+const SCENE: &str = "room:sensor=clean_mm";
+/// Millimetres between neighbours of a slanted wall, and the size of a table leg.
+const PARAMETERS: &[(&str, f64)] = &[("theta", 4.0), ("min", 1000.0)];
+
+pub(super) fn run(folder: &Path, out: &mut dyn Write) -> Outcome {
+    let frame = load::scene(SCENE)?;
+    let recipe = Recipe::new(METHODS[0], PARAMETERS, 1)?;
+    let (detection, _) = Runner::new(&recipe).detect(&frame, 0)?;
+    let source = format!("scene:{SCENE}");
+    let report = Report {
+        source: &source,
+        frame: &frame,
+        method: recipe.method,
+        parameters: &recipe.values,
+        detection: &detection,
+        times: None,
+        legend: true,
+    };
+    make_folder(folder)?;
+    let depth = folder.join("depth.png");
+    outputs::write_file(&depth, &depth_png(&frame))?;
+    let files: Vec<(&Output, PathBuf)> = OUTPUTS.iter().map(|output| (output, folder.join(output.file))).collect();
+    outputs::write_all(&report, &files)?;
+    tell(&report, &depth, &files, out)
+}
+
+fn depth_png(frame: &Frame) -> Vec<u8> {
+    match &frame.pixels {
+        Pixels::U16(values) => outputs::grey16_png(frame.width, frame.height, values),
+        _ => unreachable!("the demo's scene has 16 bits"),
+    }
+}
+
+fn tell(report: &Report<'_>, depth: &Path, files: &[(&Output, PathBuf)], out: &mut dyn Write) -> Outcome {
+    writeln!(out, "{}{}", show::summary(report), show::table(report, 12))?;
+    writeln!(out, "{}: the depth map, 16 bits, millimetres", depth.display())?;
+    for (output, path) in files {
+        writeln!(out, "{}: {}", path.display(), output.about)?;
+    }
+    let overlay = files.iter().find(|(output, _)| output.name == "overlay");
+    let picture = overlay.map(|(_, path)| path.display().to_string()).unwrap_or_default();
+    writeln!(out, "\nLook at {picture}. The same again from the file:")?;
+    let given: Vec<String> = PARAMETERS.iter().map(|(name, value)| format!("--{name} {value}")).collect();
+    Ok(writeln!(out, "  depthplanes detect {} --encoding millimetre {}", depth.display(), given.join(" "))?)
+}

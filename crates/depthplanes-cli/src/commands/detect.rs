@@ -1,0 +1,193 @@
+//! `depthplanes detect`: maps in, planes out as a table, as JSON or as files.
+
+use super::{make_folder, refuse_file};
+use crate::args::Detect;
+use crate::failure::{Failure, Outcome, note};
+use crate::inputs::{self, Input};
+use crate::run::{Recipe, Runner};
+use crate::{load, pool, show};
+use depthplanes_io::ReadOptions;
+use depthplanes_io::outputs::{self, OUTPUTS, Output, Report};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
+    let recipe = Recipe::new(wanted.method, &wanted.parameters, wanted.threads)?;
+    let inputs = inputs::expand(&wanted.inputs)?;
+    check_outputs(wanted, &inputs)?;
+    let plan = Plan { wanted, recipe: &recipe, options: load::options(&wanted.reading)?, alone: inputs.len() == 1 };
+    let bar = progress(inputs.len());
+    let mut tally = Tally::default();
+    let work = || {
+        let mut runner = Runner::new(&recipe);
+        let (plan, inputs) = (&plan, &inputs);
+        move |at: usize| {
+            let input = &inputs[at];
+            plan.process(&mut runner, input).map_err(|failure| failure.of_input(&input.name()))
+        }
+    };
+    pool::in_order(inputs.len(), wanted.jobs, work, |_, done| {
+        bar.inc(1);
+        bar.suspend(|| print(done, plan.alone, &mut tally, out))
+    })?;
+    bar.finish_and_clear();
+    tally.outcome(inputs.len())
+}
+
+/// What one input came to.
+struct Done {
+    text: String,
+    notes: Vec<String>,
+}
+
+/// What is done with each input.
+struct Plan<'a> {
+    wanted: &'a Detect,
+    recipe: &'a Recipe,
+    options: ReadOptions,
+    alone: bool,
+}
+
+impl Plan<'_> {
+    fn process(&self, runner: &mut Runner<'_>, input: &Input) -> Outcome<Done> {
+        let name = input.name();
+        let frame = load::frame(input, &self.options)?;
+        let (detection, times) = runner.detect(&frame, self.wanted.repeat)?;
+        let report = Report {
+            source: &name,
+            frame: &frame,
+            method: self.recipe.method,
+            parameters: &self.recipe.values,
+            detection: &detection,
+            times: times.as_ref(),
+            legend: self.wanted.legend,
+        };
+        let written = write(self.wanted, input, &report)?;
+        let mut notes: Vec<String> = frame.warnings.iter().map(|warning| format!("{name}: {warning}")).collect();
+        if self.wanted.json {
+            return Ok(Done { text: json(&report, self.alone), notes });
+        }
+        notes.extend(show::advice(&report));
+        Ok(Done { text: readable(self.wanted, &report, &written, self.alone), notes })
+    }
+}
+
+fn json(report: &Report<'_>, alone: bool) -> String {
+    if alone { outputs::json_document(report) } else { outputs::json_line(report) + "\n" }
+}
+
+/// The table, unless the planes went to files.
+fn readable(wanted: &Detect, report: &Report<'_>, written: &[(&Output, PathBuf)], alone: bool) -> String {
+    let mut text = show::summary(report);
+    if written.is_empty() {
+        text += &show::table(report, wanted.rows);
+        return if alone { text } else { text + "\n" };
+    }
+    let files: Vec<String> = written.iter().map(|(_, path)| path.display().to_string()).collect();
+    text += &format!("wrote {}\n", files.join(", "));
+    if wanted.out_dir.is_some() && !report.is_metric() {
+        text += "no point cloud, since camera or unit are not known\n";
+    }
+    text
+}
+
+/// Writes the outputs that are wanted of an input; says which.
+fn write(wanted: &Detect, input: &Input, report: &Report<'_>) -> Outcome<Vec<(&'static Output, PathBuf)>> {
+    let mut files = wanted.outputs.clone();
+    if let Some(folder) = &wanted.out_dir {
+        make_folder(folder)?;
+        let possible = OUTPUTS.iter().filter(|output| report.is_metric() || !output.needs_camera);
+        files.extend(possible.map(|output| (output, file_in(folder, input, output))));
+    }
+    outputs::write_all(report, &files)?;
+    Ok(files)
+}
+
+fn file_in(folder: &Path, input: &Input, output: &Output) -> PathBuf {
+    folder.join(format!("{}.{}", input.stem(), output.file))
+}
+
+/// Refuses outputs that have a wrong name or would overwrite something, before any work is done.
+fn check_outputs(wanted: &Detect, inputs: &[Input]) -> Outcome {
+    if let (Some((output, _)), true) = (wanted.outputs.first(), inputs.len() > 1) {
+        let message = format!("--{} names one file, but there are {} inputs; use --out-dir", output.name, inputs.len());
+        return Err(Failure::request(message));
+    }
+    for (output, path) in &wanted.outputs {
+        output.writer(path)?;
+        outputs::check_folder(path)?;
+    }
+    let named = wanted.outputs.iter().map(|(output, path)| (path.clone(), format!("--{}", output.name)));
+    let mut written: Vec<(PathBuf, String)> = named.collect();
+    if let Some(folder) = &wanted.out_dir {
+        refuse_file(folder)?;
+        for input in inputs {
+            let name = |output: &Output| format!("the {} of {}", output.name, input.name());
+            written.extend(OUTPUTS.iter().map(|output| (file_in(folder, input, output), name(output))));
+        }
+    }
+    Ok(outputs::check_paths(&read_paths(wanted, inputs), &written)?)
+}
+
+/// The files that are read: inputs and camera.
+fn read_paths(wanted: &Detect, inputs: &[Input]) -> Vec<(PathBuf, String)> {
+    let path = |input: &Input| match input {
+        Input::File(path) => Some((path.clone(), format!("the input {}", path.display()))),
+        _ => None,
+    };
+    let camera = wanted.reading.camera.iter().map(|path| (path.clone(), "the camera file".to_string()));
+    inputs.iter().filter_map(path).chain(camera).collect()
+}
+
+/// A bar on the terminal for several inputs; otherwise one that is never seen.
+fn progress(inputs: usize) -> ProgressBar {
+    if inputs < 2 {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left");
+    ProgressBar::new(inputs as u64).with_style(style.expect("the template is right"))
+}
+
+/// Prints what an input came to. A failure among several inputs is reported and counted; that of a
+/// single input is the command's own.
+fn print(done: Outcome<Done>, alone: bool, tally: &mut Tally, out: &mut dyn Write) -> Outcome {
+    match done {
+        Ok(done) => {
+            done.notes.iter().for_each(|message| note(message));
+            out.write_all(done.text.as_bytes())?;
+            Ok(out.flush()?)
+        }
+        Err(failure) if alone => Err(failure),
+        Err(failure) => {
+            tally.add(&failure);
+            Ok(())
+        }
+    }
+}
+
+/// The inputs that failed.
+#[derive(Default)]
+struct Tally {
+    failed: usize,
+    machine: bool,
+}
+
+impl Tally {
+    fn add(&mut self, failure: &Failure) {
+        failure.report();
+        self.failed += 1;
+        self.machine |= failure.is_machine();
+    }
+
+    /// Failure if any input failed; the machine's if it was at fault once.
+    fn outcome(&self, inputs: usize) -> Outcome {
+        if self.failed == 0 {
+            return Ok(());
+        }
+        let good = inputs - self.failed;
+        let message =
+            format!("{} of {inputs} inputs failed and have no output; the other {good} are done", self.failed);
+        Err(if self.machine { Failure::machine(message) } else { Failure::request(message) })
+    }
+}

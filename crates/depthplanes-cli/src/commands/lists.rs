@@ -1,0 +1,64 @@
+//! `depthplanes methods`, `params`, `formats`, `encodings`, `presets`: the libraries' tables.
+
+use crate::failure::Outcome;
+use crate::table::{Align, aligned, row};
+use depthplanes::methods::{METHODS, MethodInfo, Param};
+use depthplanes_io::encoding::ENCODINGS;
+use depthplanes_io::formats::FORMATS;
+use depthplanes_io::presets::SENSOR_PRESETS;
+use std::io::Write;
+
+pub(super) fn methods(out: &mut dyn Write) -> Outcome {
+    let mut rows = vec![row(["method", "stages", "about"])];
+    rows.extend(METHODS.iter().map(|method| row([method.name, &method.stages.join(", "), method.about])));
+    print(&rows, out)
+}
+
+/// The parameters of one method or of all.
+pub(super) fn params(method: Option<&MethodInfo>, out: &mut dyn Write) -> Outcome {
+    for (i, info) in METHODS.iter().filter(|info| method.is_none_or(|method| method.name == info.name)).enumerate() {
+        if i > 0 {
+            writeln!(out)?;
+        }
+        writeln!(out, "{}: {}", info.name, info.about)?;
+        let mut rows = vec![row(["parameter", "default", "unit", "accepted", "source", "meaning"])];
+        rows.extend(info.params.iter().map(param));
+        print(&rows, out)?;
+    }
+    Ok(())
+}
+
+fn param(param: &Param) -> Vec<String> {
+    let source = param.source.map_or("ours".to_string(), |section| format!("paper, {section}"));
+    let flag = format!("--{}", param.name.replace('_', "-"));
+    row([&flag, &param.default.to_string(), param.unit, &param.accepted(), &source, param.meaning])
+}
+
+pub(super) fn formats(out: &mut dyn Write) -> Outcome {
+    let mut rows = vec![row(["format", "names", "about"])];
+    rows.extend(FORMATS.iter().map(|format| {
+        let names: Vec<String> = format.extensions.iter().map(|extension| format!(".{extension}")).collect();
+        row([format.name, &names.join(" "), format.about])
+    }));
+    print(&rows, out)
+}
+
+pub(super) fn encodings(out: &mut dyn Write) -> Outcome {
+    let mut rows = vec![row(["encoding", "unit", "--scale", "about"])];
+    rows.extend(ENCODINGS.iter().map(|encoding| row([encoding.name, encoding.unit, encoding.scale, encoding.about])));
+    print(&rows, out)
+}
+
+pub(super) fn presets(out: &mut dyn Write) -> Outcome {
+    let mut rows = vec![row(["preset", "encoding", "camera for", "about"])];
+    rows.extend(SENSOR_PRESETS.iter().map(|preset| {
+        let size = preset.camera.map_or("-".to_string(), |(width, height, _)| format!("{width} x {height}"));
+        row([preset.name, preset.encoding, &size, preset.about])
+    }));
+    print(&rows, out)
+}
+
+fn print(rows: &[Vec<String>], out: &mut dyn Write) -> Outcome {
+    let columns = vec![Align::Left; rows[0].len()];
+    Ok(out.write_all(aligned(&columns, rows).as_bytes())?)
+}

@@ -1,0 +1,47 @@
+//! The commands, one file each.
+
+mod completions;
+mod demo;
+mod detect;
+mod inspect;
+mod lists;
+mod man;
+
+use crate::args::Command;
+use crate::failure::{Failure, Outcome};
+use std::io::Write;
+use std::path::Path;
+
+/// Runs a command; `out` is standard output.
+pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
+    match command {
+        Command::Detect(wanted) => detect::run(wanted, out),
+        Command::Inspect { inputs, reading, json } => inspect::run(inputs, reading, *json, out),
+        Command::Demo { out_dir } => demo::run(out_dir, out),
+        Command::Methods => lists::methods(out),
+        Command::Params { method } => lists::params(*method, out),
+        Command::Formats => lists::formats(out),
+        Command::Encodings => lists::encodings(out),
+        Command::Presets => lists::presets(out),
+        Command::Completions { shell } => completions::run(*shell, out),
+        Command::Man { out_dir } => man::run(out_dir.as_deref(), out),
+    }
+}
+
+/// Makes a folder for results, if it is not there yet.
+///
+/// # Errors
+/// A file of that name, or a disk that refuses.
+fn make_folder(folder: &Path) -> Outcome {
+    refuse_file(folder)?;
+    let failed = |error| Failure::machine(format!("{}: the folder cannot be made: {error}", folder.display()));
+    std::fs::create_dir_all(folder).map_err(failed)
+}
+
+/// Refuses a file where a folder is needed.
+fn refuse_file(folder: &Path) -> Outcome {
+    match folder.is_dir() || !folder.exists() {
+        true => Ok(()),
+        false => Err(Failure::request(format!("{}: --out-dir needs a folder, this is a file", folder.display()))),
+    }
+}

@@ -1,0 +1,115 @@
+//! What the words after a command stand for: files, folders, patterns, standard input, scenes.
+
+use crate::failure::{Failure, Outcome};
+use crate::natural;
+use depthplanes_io::formats::FORMATS;
+use depthplanes_io::outputs::OUTPUTS;
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+
+/// One input.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Input {
+    File(PathBuf),
+    /// Standard input, `-`.
+    Standard,
+    /// A made-up scene: what follows `scene:`.
+    Scene(String),
+}
+
+impl Input {
+    /// Its name for people and records: as given.
+    pub(crate) fn name(&self) -> String {
+        match self {
+            Input::File(path) => path.display().to_string(),
+            Input::Standard => "-".into(),
+            Input::Scene(spec) => format!("scene:{spec}"),
+        }
+    }
+
+    /// What the names of its files in a folder of results begin with.
+    pub(crate) fn stem(&self) -> String {
+        match self {
+            Input::File(path) => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+            Input::Standard => "stdin".into(),
+            Input::Scene(spec) => {
+                let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+                format!("scene_{}", spec.chars().map(plain).collect::<String>())
+            }
+        }
+    }
+}
+
+/// All inputs that the words stand for, in the order given; folders and patterns in natural order.
+///
+/// # Errors
+/// A folder without a map, a pattern without a match, standard input asked for twice. A file that
+/// does not exist is found out when it is read.
+pub(crate) fn expand(words: &[OsString]) -> Outcome<Vec<Input>> {
+    let mut inputs = Vec::new();
+    for word in words {
+        inputs.extend(expand_word(word)?);
+    }
+    if inputs.iter().filter(|input| **input == Input::Standard).count() > 1 {
+        return Err(Failure::request("-: standard input can be read only once; give it once"));
+    }
+    Ok(inputs)
+}
+
+/// A word that is no text can only be a path.
+fn expand_word(word: &OsStr) -> Outcome<Vec<Input>> {
+    let path = Path::new(word);
+    let word = word.to_str().unwrap_or_default();
+    if word == "-" {
+        Ok(vec![Input::Standard])
+    } else if let Some(spec) = word.strip_prefix("scene:") {
+        Ok(vec![Input::Scene(spec.into())])
+    } else if path.is_dir() {
+        maps_in(path)
+    } else if word.contains(['*', '?', '[']) && !path.exists() {
+        matching(word)
+    } else {
+        Ok(vec![Input::File(path.into())])
+    }
+}
+
+/// The files of a folder whose extension belongs to a format; not our own outputs, not subfolders.
+fn maps_in(folder: &Path) -> Outcome<Vec<Input>> {
+    let failed = |error| Failure::request(format!("{}: cannot be listed: {error}", folder.display()));
+    let mut maps = Vec::new();
+    for entry in folder.read_dir().map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if is_map(&path) {
+            maps.push(path);
+        }
+    }
+    if maps.is_empty() {
+        let known = FORMATS.iter().flat_map(|format| format.extensions);
+        let known: Vec<String> = known.map(|extension| format!("*.{extension}")).collect();
+        let message = format!("{}: no map in this folder; looked for {}", folder.display(), known.join(", "));
+        return Err(Failure::request(message));
+    }
+    Ok(in_natural_order(maps))
+}
+
+fn is_map(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let known = FORMATS.iter().any(|format| format.extensions.contains(&extension.as_str()));
+    let ours = OUTPUTS.iter().any(|output| name.ends_with(&format!(".{}", output.file)));
+    known && !ours && !name.starts_with('.') && path.is_file()
+}
+
+fn matching(pattern: &str) -> Outcome<Vec<Input>> {
+    let wrong = |error: glob::PatternError| Failure::request(format!("{pattern}: not a pattern: {error}"));
+    let files: Vec<PathBuf> = glob::glob(pattern).map_err(wrong)?.flatten().filter(|path| path.is_file()).collect();
+    if files.is_empty() {
+        return Err(Failure::request(format!("{pattern}: no file matches this pattern")));
+    }
+    Ok(in_natural_order(files))
+}
+
+fn in_natural_order(mut paths: Vec<PathBuf>) -> Vec<Input> {
+    paths.sort_by(|a, b| natural::compare(&a.to_string_lossy(), &b.to_string_lossy()));
+    paths.into_iter().map(Input::File).collect()
+}

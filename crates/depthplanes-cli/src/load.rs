@@ -1,0 +1,105 @@
+//! An input becomes a frame.
+
+use crate::args::Reading;
+use crate::failure::{Failure, Outcome};
+use crate::inputs::Input;
+use depthplanes::Intrinsics;
+use depthplanes::scene::{ScenePixels, Spec};
+use depthplanes_io::camera_file::read_camera;
+use depthplanes_io::encoding::Stereo;
+use depthplanes_io::formats::{DecodeOptions, Limits};
+use depthplanes_io::{Frame, Pixels, ReadOptions};
+use std::io::Read;
+
+/// The flags as the reading library takes them; reads the camera file.
+///
+/// # Errors
+/// A camera file that cannot be read, intrinsics that no camera has, half a stereo rig.
+pub(crate) fn options(reading: &Reading) -> Outcome<ReadOptions> {
+    let mut options = ReadOptions {
+        decode: DecodeOptions { limits: Limits::default(), member: reading.member.clone(), raw_size: reading.raw_size },
+        preset: reading.preset.clone(),
+        encoding: reading.encoding.clone(),
+        scale: reading.scale,
+        disparity: reading.disparity,
+        swap_bytes: reading.swap_bytes,
+        missing: reading.missing,
+        valid_range: reading.valid_range.map(|[low, high]| (low, high)),
+        ..ReadOptions::default()
+    };
+    if let Some(path) = &reading.camera {
+        options = options.camera(&read_camera(path)?);
+    }
+    if let Some([fx, fy, cx, cy]) = reading.intrinsics {
+        options.intrinsics = Some(Intrinsics::new(fx, fy, cx, cy)?);
+        options.camera_size = None;
+    }
+    options.stereo = stereo(reading, &options)?;
+    Ok(options)
+}
+
+/// The rig: flags go before the camera file, and the camera's own focal length is the rig's unless
+/// another is given.
+fn stereo(reading: &Reading, options: &ReadOptions) -> Outcome<Option<Stereo>> {
+    let given = [reading.baseline, reading.focal, reading.doffs];
+    if given.iter().all(Option::is_none) {
+        return Ok(options.stereo);
+    }
+    let lacking = |what| Failure::request(format!("a stereo rig needs its {what} as well"));
+    let known = options.stereo;
+    let baseline_m = reading.baseline.or(known.map(|rig| rig.baseline_m)).ok_or_else(|| lacking("--baseline"))?;
+    let focal = reading.focal.or(known.map(|rig| rig.focal_px)).or(options.intrinsics.map(|camera| camera.fx.abs()));
+    let focal_px = focal.ok_or_else(|| lacking("--focal (or --intrinsics)"))?;
+    let doffs_px = reading.doffs.or(known.map(|rig| rig.doffs_px)).unwrap_or(0.0);
+    Ok(Some(Stereo { focal_px, baseline_m, doffs_px }))
+}
+
+/// Reads an input.
+///
+/// # Errors
+/// What is wrong with the file or the scene.
+pub(crate) fn frame(input: &Input, options: &ReadOptions) -> Outcome<Frame> {
+    match input {
+        Input::File(path) => Ok(depthplanes_io::read(path, options)?),
+        Input::Standard => Ok(depthplanes_io::decode(&standard_input()?, "-", options)?),
+        Input::Scene(spec) => {
+            let mut frame = scene(spec)?;
+            if *options != ReadOptions::default() {
+                frame
+                    .warnings
+                    .push("a made-up scene knows its own unit and camera: flags on reading are not used".into());
+            }
+            Ok(frame)
+        }
+    }
+}
+
+/// All of standard input, up to the limit of a file.
+fn standard_input() -> Outcome<Vec<u8>> {
+    let most = Limits::default().max_bytes as u64 + 1;
+    let mut bytes = Vec::new();
+    let failed = |error| Failure::request(format!("-: standard input cannot be read: {error}"));
+    std::io::stdin().lock().take(most).read_to_end(&mut bytes).map_err(failed)?;
+    Ok(bytes)
+}
+
+/// A made-up scene as a frame; it knows its own unit and camera.
+pub(crate) fn scene(spec: &str) -> Outcome<Frame> {
+    let scene = spec.parse::<Spec>()?.frame()?;
+    let pixels = match scene.pixels {
+        ScenePixels::U8(pixels) => Pixels::U8(pixels),
+        ScenePixels::U16(pixels) => Pixels::U16(pixels),
+        ScenePixels::F32(pixels) => Pixels::F32(pixels),
+    };
+    Ok(Frame {
+        width: scene.width,
+        height: scene.height,
+        pixels,
+        missing: None,
+        valid_range: None,
+        sensor: scene.sensor,
+        format: "scene",
+        encoding: "scene",
+        warnings: Vec::new(),
+    })
+}

@@ -1,0 +1,113 @@
+//! One map through the pipeline: which method with which parameters, and how long it takes.
+
+use crate::failure::{Failure, Outcome};
+use depthplanes::methods::MethodInfo;
+use depthplanes::{AnyView, Detection, Detector, Sensor};
+use depthplanes_io::Frame;
+use depthplanes_io::outputs::{Spread, Times};
+use std::time::Instant;
+
+/// A method with the value of each parameter, checked.
+pub(crate) struct Recipe {
+    pub(crate) method: &'static MethodInfo,
+    pub(crate) values: Vec<f64>,
+    threads: usize,
+}
+
+impl Recipe {
+    /// The method with some parameters given and the others at their defaults.
+    ///
+    /// # Errors
+    /// A parameter that the method does not have, or a value out of range.
+    pub(crate) fn new(method: &'static MethodInfo, given: &[(&'static str, f64)], threads: usize) -> Outcome<Self> {
+        let mut values = method.defaults();
+        for &(name, value) in given {
+            let at = method.params.iter().position(|param| param.name == name);
+            values[at.ok_or_else(|| lacks(method, name))?] = value;
+        }
+        method.with(given)?;
+        Ok(Recipe { method, values, threads })
+    }
+
+    fn detector(&self, sensor: Sensor) -> Detector {
+        let method = (self.method.build)(&self.values).expect("the parameters were checked");
+        Detector::from_method(method).threads(self.threads).sensor(sensor)
+    }
+}
+
+fn lacks(method: &MethodInfo, name: &str) -> Failure {
+    let has: Vec<String> = method.params.iter().map(|param| format!("--{}", param.name.replace('_', "-"))).collect();
+    Failure::request(format!("method `{}` has no parameter `{name}`; it has: {}", method.name, has.join(", ")))
+}
+
+/// A detector and the sensor it was made for.
+pub(crate) struct Runner<'a> {
+    recipe: &'a Recipe,
+    sensor: Sensor,
+    detector: Detector,
+}
+
+impl<'a> Runner<'a> {
+    pub(crate) fn new(recipe: &'a Recipe) -> Self {
+        let sensor = Sensor::default();
+        Runner { recipe, sensor, detector: recipe.detector(sensor) }
+    }
+
+    /// Finds the planes of a frame; with `repeat` above 0 it also measures so many runs.
+    ///
+    /// # Errors
+    /// Those of the library.
+    pub(crate) fn detect(&mut self, frame: &Frame, repeat: usize) -> Outcome<(Detection, Option<Times>)> {
+        if frame.sensor != self.sensor {
+            self.sensor = frame.sensor;
+            self.detector = self.recipe.detector(self.sensor);
+        }
+        let view = frame.view()?;
+        let detection = self.detector.detect(view)?.clone();
+        let times = (repeat > 0).then(|| self.measure(view, repeat)).transpose()?;
+        Ok((detection, times))
+    }
+
+    /// Times so many runs over a map that the detector has seen before.
+    fn measure(&mut self, view: AnyView<'_>, repeat: usize) -> Outcome<Times> {
+        let mut totals = Vec::with_capacity(repeat);
+        let mut stages: Vec<(&'static str, Vec<f64>)> =
+            self.recipe.method.stages.iter().map(|&stage| (stage, vec![0.0; repeat])).collect();
+        for run in 0..repeat {
+            let start = Instant::now();
+            let mut stage_start = start;
+            let mut observe = |name: &'static str| {
+                let now = Instant::now();
+                if let Some((_, times)) = stages.iter_mut().find(|(stage, _)| *stage == name) {
+                    times[run] += milliseconds(now - stage_start);
+                }
+                stage_start = now;
+            };
+            self.detector.detect_observed(view, &mut observe)?;
+            totals.push(milliseconds(start.elapsed()));
+        }
+        let stages = stages.into_iter().map(|(name, times)| (name, spread(times))).collect();
+        Ok(Times { total: spread(totals), stages })
+    }
+}
+
+fn milliseconds(duration: std::time::Duration) -> f64 {
+    duration.as_secs_f64() * 1e3
+}
+
+fn spread(mut times: Vec<f64>) -> Spread {
+    times.sort_by(f64::total_cmp);
+    let middle = times.len() / 2;
+    let median = if times.len() % 2 == 1 { times[middle] } else { (times[middle - 1] + times[middle]) / 2.0 };
+    Spread { median, min: times[0] }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_median_of_an_even_number_of_times_lies_between_the_middle_two() {
+        let spread = super::spread(vec![4.0, 1.0, 3.0, 2.0]);
+        assert_eq!((spread.median, spread.min), (2.5, 1.0));
+        assert_eq!(super::spread(vec![7.0]).median, 7.0);
+    }
+}

@@ -1,0 +1,197 @@
+//! A report for people: what was read, what was found, and what to try if that is little.
+
+use crate::table::{Align, aligned, row};
+use depthplanes::{Measure, Plane};
+use depthplanes_io::outputs::{Report, Times};
+
+/// One line on the frame, one on the method and what it found, one on the time if it was measured.
+pub(crate) fn summary(report: &Report<'_>) -> String {
+    let (frame, detection) = (report.frame, report.detection);
+    let valid = percent(detection.valid_pixels as f64 / (frame.width * frame.height).max(1) as f64);
+    let mut text = format!(
+        "{}: {} x {}, {}, {} ({}), {valid} valid\n",
+        report.source,
+        frame.width,
+        frame.height,
+        frame.format,
+        frame.encoding,
+        meaning(frame.sensor.measure)
+    );
+    let planes = match detection.planes.len() {
+        1 => "1 plane".into(),
+        count => format!("{count} planes"),
+    };
+    let whole = if detection.filled_pixels > 0 { "valid and filled pixels" } else { "valid pixels" };
+    let share = percent(detection.labelled_share());
+    text += &format!("{} ({}): {planes} on {share} of the {whole}\n", report.method.name, parameters(report));
+    if let Some(times) = report.times {
+        text += &time(times);
+    }
+    text
+}
+
+fn meaning(measure: Measure) -> String {
+    match measure {
+        Measure::Depth { metres } => format!("depth, a unit is {}", length(metres)),
+        Measure::InverseDepth { .. } => "inverse depth".into(),
+        Measure::Disparity => "disparity of an unknown rig".into(),
+    }
+}
+
+/// The parameters of the method's paper, and our additions where they are used.
+fn parameters(report: &Report<'_>) -> String {
+    let all = report.method.params.iter().zip(report.parameters);
+    let told = all.filter(|(param, value)| param.source.is_some() || **value != param.default);
+    let pairs: Vec<String> = told.map(|(param, value)| format!("{} {value}", param.name)).collect();
+    pairs.join(", ")
+}
+
+fn time(times: &Times) -> String {
+    let stages: Vec<String> =
+        times.stages.iter().map(|(name, spread)| format!("{name} {:.3}", spread.median)).collect();
+    let (median, min) = (times.total.median, times.total.min);
+    format!("time: {median:.3} ms median, {min:.3} ms least; medians of the stages: {}\n", stages.join(", "))
+}
+
+/// The first planes in columns, with units in the heading; empty if there is none.
+pub(crate) fn table(report: &Report<'_>, most: usize) -> String {
+    let planes = &report.detection.planes;
+    if planes.is_empty() {
+        return String::new();
+    }
+    let shown = &planes[..planes.len().min(most)];
+    let metric = report.is_metric();
+    let mut rows = vec![if metric { metric_heading() } else { map_heading() }];
+    rows.extend(shown.iter().map(|plane| if metric { metric_row(plane) } else { map_row(plane) }));
+    let mut text = aligned(&vec![Align::Right; rows[0].len()], &rows);
+    if shown.len() < planes.len() {
+        let hidden = planes.len() - shown.len();
+        text += &format!("... and {hidden} smaller; --rows N shows more, --planes FILE writes all\n");
+    }
+    text
+}
+
+fn metric_heading() -> Vec<String> {
+    row(["plane", "pixels", "share", "distance", "normal x", "y", "z", "rms", "columns", "rows"])
+}
+
+fn map_heading() -> Vec<String> {
+    row(["plane", "pixels", "share", "mean value", "per column", "per row", "rms", "columns", "rows"])
+}
+
+fn metric_row(plane: &Plane) -> Vec<String> {
+    let middle = plane.metric.map_or(unknown(5), |metric| {
+        let mut cells = vec![format!("{:.3} m", metric.plane.distance)];
+        cells.extend(metric.plane.normal.map(|x| format!("{x:.3}")));
+        cells.push(format!("{:.1} mm", 1e3 * metric.rms_m));
+        cells
+    });
+    assemble(plane, middle)
+}
+
+fn map_row(plane: &Plane) -> Vec<String> {
+    let middle = plane.fit.map_or(unknown(4), |fit| {
+        let [u, v] = plane.centroid;
+        let mean = fit.gradient[0] * u + fit.gradient[1] * v + fit.offset;
+        [mean, fit.gradient[0], fit.gradient[1], fit.rms].map(significant).to_vec()
+    });
+    assemble(plane, middle)
+}
+
+fn assemble(plane: &Plane, middle: Vec<String>) -> Vec<String> {
+    let pixels = plane.bounding_box;
+    let mut cells = vec![plane.label.to_string(), plane.pixel_count.to_string(), percent(plane.share_of_valid)];
+    cells.extend(middle);
+    cells.push(format!("{}..{}", pixels.u_min, pixels.u_max));
+    cells.push(format!("{}..{}", pixels.v_min, pixels.v_max));
+    cells
+}
+
+fn unknown(cells: usize) -> Vec<String> {
+    vec!["-".into(); cells]
+}
+
+/// What a person may want to know or try, given what was found.
+pub(crate) fn advice(report: &Report<'_>) -> Vec<String> {
+    let (detection, source) = (report.detection, report.source);
+    if detection.valid_pixels == 0 {
+        return vec![format!(
+            "{source}: no pixel is valid: all are 0, NaN, the missing value or outside the valid range; \
+             `depthplanes inspect` shows the values"
+        )];
+    }
+    let mut notes = Vec::new();
+    if detection.planes.is_empty() {
+        notes.push(format!(
+            "{source}: no plane found with {}; `depthplanes params {}` says what these do, \
+             `depthplanes inspect` shows the map's values",
+            parameters(report),
+            report.method.name
+        ));
+    }
+    notes.extend(units_advice(report));
+    notes
+}
+
+/// Differences between neighbours of a surface, metres, that depth cameras show at a few metres.
+const USUAL_STEP_M: f64 = 0.005;
+
+/// A parameter in map units means another length in each encoding; says so where that matters.
+fn units_advice(report: &Report<'_>) -> Vec<String> {
+    let Measure::Depth { metres } = report.frame.sensor.measure else { return Vec::new() };
+    let few = report.detection.labelled_share() < 0.25;
+    let mut notes = Vec::new();
+    for (param, value) in report.method.params.iter().zip(report.parameters) {
+        let given_m = value * metres;
+        let odd = given_m > 20.0 * USUAL_STEP_M || (few && given_m < USUAL_STEP_M / 2.0);
+        // 0 switches a parameter off, whatever the unit.
+        if param.unit == "map units" && *value > 0.0 && odd {
+            notes.push(format!(
+                "{}: {} {value} is {} here, since a unit of the map is {}; try --{} {}",
+                report.source,
+                param.name,
+                length(given_m),
+                length(metres),
+                param.name.replace('_', "-"),
+                significant(USUAL_STEP_M / metres)
+            ));
+        }
+    }
+    notes
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+/// A length with the unit that suits it.
+fn length(metres: f64) -> String {
+    if metres.abs() >= 1.0 { format!("{} m", significant(metres)) } else { format!("{} mm", significant(metres * 1e3)) }
+}
+
+/// About four significant digits, no trailing zeros, no `-0`.
+fn significant(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{}", value + 0.0);
+    }
+    let digits = (3 - value.abs().log10().floor() as i32).clamp(0, 12) as usize;
+    let text = format!("{value:.digits$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    text.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{length, significant};
+
+    #[test]
+    fn numbers_are_shown_with_about_four_digits() {
+        let shown = [1234.56, 12.3456, 0.00123456, -40.0, 100.0, 0.0, -0.0].map(significant);
+        assert_eq!(shown, ["1235", "12.35", "0.001235", "-40", "100", "0", "0"]);
+    }
+
+    #[test]
+    fn lengths_get_the_unit_that_suits_them() {
+        assert_eq!([length(0.0002), length(0.5), length(2.0)], ["0.2 mm", "500 mm", "2 m"]);
+    }
+}

@@ -1,0 +1,255 @@
+//! `depthplanes detect` and its outputs.
+
+mod support;
+
+use depthplanes_io::{Pixels, ReadOptions};
+use serde_json::Value;
+use std::io::Write;
+use std::process::Stdio;
+use support::{Bench, Ran, names_in, two_planes};
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+#[test]
+fn without_output_flags_a_table_is_printed() {
+    let bench = Bench::with_map("table");
+    let out = bench.run(&["detect", "map.pgm"]).ok();
+    let lines: Vec<&str> = out.lines().collect();
+    assert!(lines[0].starts_with("map.pgm: 32 x 24, "), "{out}");
+    assert!(lines[1].starts_with("ngaf (theta 1, min 32, window 0"), "{out}");
+    assert!(lines[1].ends_with("2 planes on 100.0 % of the valid pixels"), "{out}");
+    assert!(
+        lines[2].split_whitespace().eq("plane pixels share mean value per column per row rms columns rows".split(' '))
+    );
+    let first: Vec<&str> = lines[3].split_whitespace().collect();
+    assert_eq!(first[..5], ["1", "384", "51.1", "%", "1503"], "{out}");
+    assert_eq!(bench.names(), ["map.pgm"]);
+}
+
+#[test]
+fn with_a_camera_the_table_is_in_metres() {
+    let bench = Bench::with_map("metric_table");
+    let words = ["detect", "map.pgm", "--intrinsics", "30,-30,15.5,11.5", "--encoding", "millimetre"];
+    let out = bench.run(&words).ok();
+    assert!(out.contains("distance"), "{out}");
+    assert!(out.contains("1.503 m"), "{out}");
+}
+
+#[test]
+fn json_of_one_map_is_one_document() {
+    let bench = Bench::with_map("json");
+    let record = json(&bench.run(&["detect", "map.pgm", "--json", "--theta", "2", "--min", "10"]).ok());
+    assert_eq!(record["schema"], "depthplanes.planes/1");
+    assert_eq!(record["source"], "map.pgm");
+    assert_eq!(record["method"], "ngaf");
+    assert_eq!(record["parameters"]["theta"], 2.0);
+    assert_eq!(record["parameters"]["min"], 10);
+    assert_eq!(record["valid_pixels"], 32 * 24 - 16);
+    assert_eq!(record["planes"].as_array().unwrap().len(), 2);
+    assert_eq!(record["planes"][0]["pixel_count"], 384);
+    assert!(record.get("time_ms").is_none());
+}
+
+#[test]
+fn json_of_several_maps_is_one_line_each() {
+    let bench = Bench::with_map("json_lines");
+    bench.write("other.pgm", &two_planes(700));
+    let out = bench.run(&["detect", "other.pgm", "map.pgm", "--json"]).ok();
+    let sources: Vec<Value> = out.lines().map(|line| json(line)["source"].clone()).collect();
+    assert_eq!(sources, ["other.pgm", "map.pgm"]);
+}
+
+#[test]
+fn repeat_measures_the_whole_and_each_stage() {
+    let bench = Bench::with_map("repeat");
+    let record = json(&bench.run(&["detect", "map.pgm", "--json", "--repeat", "4"]).ok());
+    let stages = depthplanes::methods::find("ngaf").unwrap().stages;
+    let times = record["time_ms"].as_object().unwrap();
+    assert_eq!(times.len(), stages.len() + 1);
+    for name in stages.iter().chain([&"total"]) {
+        let (median, min) = (times[*name]["median"].as_f64().unwrap(), times[*name]["min"].as_f64().unwrap());
+        assert!(0.0 <= min && min <= median, "{name}: {min} {median}");
+    }
+    assert!(times["total"]["min"].as_f64().unwrap() > 0.0);
+    assert!(bench.run(&["detect", "map.pgm", "--repeat", "3"]).ok().contains("\ntime: "));
+}
+
+#[test]
+fn all_outputs_are_written_and_can_be_read_again() {
+    let bench = Bench::with_map("outputs");
+    let camera = ["--encoding", "millimetre", "--intrinsics", "30,30,15.5,11.5"];
+    let files = ["--labels", "l.png", "--overlay", "o.png", "--planes", "p.json", "--cloud", "c.ply", "--legend"];
+    let out = bench.run(&[&["detect", "map.pgm"], &camera[..], &files].concat()).ok();
+    assert!(out.contains("wrote l.png, o.png, p.json, c.ply"), "{out}");
+    assert_eq!(bench.names(), ["c.ply", "l.png", "map.pgm", "o.png", "p.json"]);
+    let record = json(&String::from_utf8(bench.read("p.json")).unwrap());
+    assert!((record["planes"][0]["metric"]["distance_m"].as_f64().unwrap() - 1.503).abs() < 1e-9);
+    let vertices = format!("element vertex {}\n", 32 * 24 - 16);
+    assert!(String::from_utf8_lossy(&bench.read("c.ply")).contains(&vertices));
+}
+
+#[test]
+fn label_png_and_label_npy_are_the_same() {
+    let bench = Bench::with_map("png_npy");
+    bench.run(&["detect", "map.pgm", "--labels", "l.png"]).ok();
+    bench.run(&["detect", "map.pgm", "--labels", "l.npy"]).ok();
+    let read = |name: &str| depthplanes_io::read(bench.folder.join(name), &ReadOptions::default()).unwrap();
+    let (png, npy) = (read("l.png"), read("l.npy"));
+    assert_eq!((png.width, png.height), (32, 24));
+    assert_eq!(png.pixels, npy.pixels);
+    let Pixels::U16(labels) = png.pixels else { panic!("not 16 bits") };
+    assert_eq!((labels[0], labels[31], labels[32 * 23]), (0, 1, 2));
+}
+
+#[test]
+fn planes_can_be_a_csv() {
+    let bench = Bench::with_map("csv");
+    bench.run(&["detect", "map.pgm", "--planes", "p.csv"]).ok();
+    let csv = String::from_utf8(bench.read("p.csv")).unwrap();
+    let lines: Vec<&str> = csv.lines().collect();
+    assert!(lines[0].starts_with("source,label,pixel_count,"));
+    assert!(lines[1].starts_with("map.pgm,1,384,"), "{csv}");
+    assert_eq!(lines.len(), 3);
+}
+
+#[test]
+fn a_folder_of_results_gets_fixed_names_and_no_cloud_without_a_camera() {
+    let bench = Bench::with_map("out_dir");
+    bench.run(&["detect", "map.pgm", "--out-dir", "new/results"]).ok();
+    let names = ["map.labels.png", "map.overlay.png", "map.planes.json"];
+    assert_eq!(names_in(&bench.folder.join("new/results")), names);
+}
+
+#[test]
+fn many_inputs_on_many_threads_give_the_same_as_one_by_one() {
+    let bench = Bench::new("jobs");
+    std::fs::create_dir(bench.folder.join("maps")).unwrap();
+    for i in 0..12u16 {
+        bench.write(&format!("maps/frame{i}.pgm"), &two_planes(600 + 37 * i));
+    }
+    let many = bench.run(&["detect", "maps", "--jobs", "4", "--out-dir", "many", "--json"]).ok();
+    let mut single = String::new();
+    for i in 0..12 {
+        let name = format!("maps/frame{i}.pgm");
+        let word = name.replace('/', std::path::MAIN_SEPARATOR_STR);
+        bench.run(&["detect", &word, "--out-dir", "single"]).ok();
+        single += &(json(&bench.run(&["detect", &word, "--json"]).ok()).to_string() + "\n");
+    }
+    let value = |text: &str| text.lines().map(json).collect::<Vec<_>>();
+    assert_eq!(value(&many), value(&single), "natural order, same records");
+    let names = names_in(&bench.folder.join("many"));
+    assert_eq!(names.len(), 36);
+    assert_eq!(names, names_in(&bench.folder.join("single")));
+    for name in names {
+        assert_eq!(bench.read(&format!("many/{name}")), bench.read(&format!("single/{name}")), "{name}");
+    }
+}
+
+#[test]
+fn threads_do_not_change_the_answer() {
+    let bench = Bench::new("threads");
+    let of = |threads| bench.run(&["detect", "scene:room", "--json", "--theta", "5", "--threads", threads]).ok();
+    assert_eq!(of("1"), of("3"));
+}
+
+#[test]
+fn a_folder_skips_what_is_no_map_and_its_own_results() {
+    let bench = Bench::with_map("skips");
+    bench.write("notes.txt", b"not a map");
+    bench.run(&["detect", ".", "--out-dir", "."]).ok();
+    let out = bench.run(&["detect", ".", "--json"]).ok();
+    assert_eq!(json(&out)["planes"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn a_pattern_that_the_shell_left_alone_is_expanded() {
+    let bench = Bench::with_map("pattern");
+    bench.write("map10.pgm", &two_planes(800));
+    bench.write("map9.pgm", &two_planes(900));
+    let out = bench.run(&["detect", "map*.pgm", "--json"]).ok();
+    let sources: Vec<Value> = out.lines().map(|line| json(line)["source"].clone()).collect();
+    assert_eq!(sources, ["map.pgm", "map9.pgm", "map10.pgm"]);
+}
+
+#[test]
+fn a_map_can_come_from_standard_input() {
+    let bench = Bench::new("stdin");
+    let mut command = bench.command();
+    command.args(["detect", "-", "--json"]).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    child.stdin.take().unwrap().write_all(&two_planes(1003)).unwrap();
+    let record = json(&Ran::from(child.wait_with_output().unwrap()).ok());
+    assert_eq!(record["source"], "-");
+    assert_eq!(record["planes"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn a_made_up_scene_is_an_input() {
+    let bench = Bench::new("scene");
+    let record = json(&bench.run(&["detect", "scene:room:size=160x120,seed=3", "--json"]).ok());
+    assert_eq!((&record["width"], &record["height"]), (&Value::from(160), &Value::from(120)));
+    assert!(record["intrinsics"]["fx"].as_f64().unwrap() > 0.0);
+    bench.run(&["detect", "scene:room:size=160x120", "--out-dir", "d"]).ok();
+    assert!(names_in(&bench.folder.join("d")).iter().all(|name| name.starts_with("scene_room_size_160x120.")));
+}
+
+#[test]
+fn reading_flags_that_a_scene_cannot_use_are_remarked_on() {
+    let bench = Bench::new("scene_flags");
+    let ran = bench.run(&["detect", "scene:room:size=64x48", "--preset", "kinect1"]);
+    assert!(ran.err.contains("flags on reading are not used"), "{ran:?}");
+    ran.ok();
+}
+
+#[test]
+fn disparities_with_a_rig_become_metric() {
+    let bench = Bench::with_map("rig");
+    let words = ["detect", "map.pgm", "--json", "--disparity", "--focal", "1000", "--baseline", "0.1"];
+    let record = json(&bench.run(&[&words[..], &["--intrinsics", "1000,1000,16,12"]].concat()).ok());
+    assert_eq!(record["measure"]["kind"], "inverse_depth");
+    assert!(record["planes"][0]["metric"].is_object(), "{record}");
+}
+
+#[test]
+fn where_no_plane_is_found_it_says_what_to_try() {
+    let bench = Bench::with_map("no_plane");
+    let ran = bench.run(&["detect", "map.pgm", "--min", "100000"]);
+    assert!(ran.err.contains("no plane found with theta 1, min 100000"), "{ran:?}");
+    assert!(ran.err.contains("depthplanes params ngaf"), "{ran:?}");
+    assert!(ran.ok().contains("0 planes"));
+    bench.write("empty.pgm", &[b"P5 4 2 65535\n".to_vec(), vec![0; 16]].concat());
+    let ran = bench.run(&["detect", "empty.pgm"]);
+    assert!(ran.err.contains("no pixel is valid"), "{ran:?}");
+    ran.ok();
+}
+
+#[test]
+fn a_threshold_of_a_metre_is_remarked_on() {
+    let bench = Bench::with_map("metre");
+    let ran = bench.run(&["detect", "map.pgm", "--scale", "1", "--encoding", "millimetre"]);
+    assert!(ran.err.contains("theta 1 is 1 m here"), "{ran:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_closed_pipe_is_quiet() {
+    let bench = Bench::with_map("pipe");
+    let program = env!("CARGO_BIN_EXE_depthplanes");
+    let script = format!("'{program}' detect map.pgm map.pgm map.pgm --json | head -c 1; exit ${{PIPESTATUS[0]:-0}}");
+    let ran = Ran::from(bench.command_of("bash").args(["-c", &script]).output().unwrap());
+    assert_eq!((ran.code, ran.err.as_str()), (Some(0), ""), "{ran:?}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_name_need_not_be_text() {
+    use std::os::unix::ffi::OsStrExt;
+    let bench = Bench::new("not_text");
+    let name = std::ffi::OsStr::from_bytes(b"m\xe4p.pgm");
+    std::fs::write(bench.folder.join(name), two_planes(1003)).unwrap();
+    let command = &mut bench.command();
+    let record = json(&Ran::from(command.args(["detect", "--json"]).arg(name).output().unwrap()).ok());
+    assert_eq!(record["planes"].as_array().unwrap().len(), 2);
+}

@@ -1,0 +1,68 @@
+//! The point cloud: every valid pixel in metres, with its colour and its plane's label.
+//!
+//! Binary little-endian PLY, which MeshLab, CloudCompare, Open3D and Blender read. Points are in the
+//! optical frame: x right, y down, z forward.
+
+use super::colour::palette;
+use super::{Output, OutputError, Report, Writer, shade};
+use depthplanes::{Measure, with_view};
+
+pub(super) const OUTPUT: Output = Output {
+    name: "cloud",
+    about: "point cloud in metres with colours and labels; needs the camera",
+    file: "cloud.ply",
+    needs_camera: true,
+    writers: &[Writer { extension: "ply", encode: ply }],
+};
+
+fn ply(report: &Report<'_>) -> Result<Vec<u8>, OutputError> {
+    let points = points(report)?;
+    let count = points.len() / POINT_BYTES;
+    let mut bytes = format!(
+        "ply\nformat binary_little_endian 1.0\ncomment depthplanes: metres, x right, y down, z forward\n\
+         element vertex {count}\n\
+         property float x\nproperty float y\nproperty float z\n\
+         property uchar red\nproperty uchar green\nproperty uchar blue\n\
+         property ushort label\nend_header\n"
+    )
+    .into_bytes();
+    bytes.extend(points);
+    Ok(bytes)
+}
+
+/// Three floats, three colour channels, one label.
+const POINT_BYTES: usize = 3 * 4 + 3 + 2;
+
+fn points(report: &Report<'_>) -> Result<Vec<u8>, OutputError> {
+    let sensor = report.frame.sensor;
+    if sensor.measure == Measure::Disparity {
+        let missing = "to know what the disparities mean: give --focal and --baseline of the rig";
+        return Err(OutputError::NeedsCamera { missing });
+    }
+    let camera = sensor.intrinsics.ok_or(OutputError::NeedsCamera {
+        missing: "the camera's intrinsics: give --intrinsics fx,fy,cx,cy, --camera FILE or --preset SENSOR",
+    })?;
+    let greys = shade::greys(report.frame)?;
+    let labels = &report.detection.labels;
+    let palette = palette(report.detection.planes.len());
+    let width = report.frame.width;
+    let mut bytes = Vec::with_capacity(labels.len() * POINT_BYTES);
+    let mut add = |at: usize, value: f64| {
+        let Some(z) = sensor.measure.depth_m(value) else { return };
+        let ray = camera.ray((at % width) as f64, (at / width) as f64);
+        let label = labels[at];
+        let shown = if label == 0 { greys[at] } else { palette[usize::from(label)] };
+        bytes.extend(ray.iter().flat_map(|r| ((r * z) as f32).to_le_bytes()));
+        bytes.extend(shown);
+        bytes.extend(label.to_le_bytes());
+    };
+    with_view!(report.frame.view()?, view => {
+        let valid = view.validity();
+        for (at, &value) in view.rows().flatten().enumerate() {
+            if valid.holds(value) {
+                add(at, f64::from(value));
+            }
+        }
+    });
+    Ok(bytes)
+}

@@ -1,0 +1,172 @@
+//! The frame's record as it stands in JSON; docs/planes-schema.md describes each field.
+
+use super::{Report, Spread, Times};
+use depthplanes::methods::ParamKind;
+use depthplanes::{Intrinsics, Measure, Plane};
+use serde::Serialize;
+use serde_json::{Map, Number, Value};
+
+/// Name and version of the layout. A field may be added within a version; none changes its meaning.
+pub const SCHEMA: &str = "depthplanes.planes/1";
+
+#[derive(Serialize)]
+pub(super) struct FrameRecord<'a> {
+    schema: &'static str,
+    version: &'static str,
+    source: &'a str,
+    format: &'static str,
+    encoding: &'static str,
+    width: usize,
+    height: usize,
+    measure: MeasureRecord,
+    intrinsics: Option<IntrinsicsRecord>,
+    method: &'static str,
+    parameters: Map<String, Value>,
+    valid_pixels: usize,
+    filled_pixels: usize,
+    labelled_pixels: usize,
+    labelled_share: f64,
+    warnings: &'a [String],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    time_ms: Option<Map<String, Value>>,
+    planes: Vec<PlaneRecord>,
+}
+
+#[derive(Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+enum MeasureRecord {
+    Depth { metres_per_unit: f64 },
+    InverseDepth { slope_per_m: f64, offset_per_m: f64 },
+    Disparity,
+}
+
+#[derive(Serialize)]
+struct IntrinsicsRecord {
+    fx: f64,
+    fy: f64,
+    cx: f64,
+    cy: f64,
+}
+
+#[derive(Serialize)]
+struct PlaneRecord {
+    label: u16,
+    pixel_count: usize,
+    share_of_valid: f64,
+    bounding_box: BoxRecord,
+    centroid_px: [f64; 2],
+    fit: Option<FitRecord>,
+    metric: Option<MetricRecord>,
+}
+
+#[derive(Serialize)]
+struct BoxRecord {
+    u_min: u32,
+    v_min: u32,
+    u_max: u32,
+    v_max: u32,
+}
+
+#[derive(Serialize)]
+struct FitRecord {
+    gradient: [f64; 2],
+    offset: f64,
+    rms: f64,
+}
+
+#[derive(Serialize)]
+struct MetricRecord {
+    normal: [f64; 3],
+    distance_m: f64,
+    rms_m: f64,
+    centroid_m: [f64; 3],
+    covariance: [[f64; 4]; 4],
+}
+
+impl<'a> From<&Report<'a>> for FrameRecord<'a> {
+    fn from(report: &Report<'a>) -> Self {
+        let (frame, detection) = (report.frame, report.detection);
+        FrameRecord {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
+            source: report.source,
+            format: frame.format,
+            encoding: frame.encoding,
+            width: frame.width,
+            height: frame.height,
+            measure: frame.sensor.measure.into(),
+            intrinsics: frame.sensor.intrinsics.map(IntrinsicsRecord::from),
+            method: report.method.name,
+            parameters: parameters(report),
+            valid_pixels: detection.valid_pixels,
+            filled_pixels: detection.filled_pixels,
+            labelled_pixels: detection.labelled_pixels(),
+            labelled_share: detection.labelled_share(),
+            warnings: &frame.warnings,
+            time_ms: report.times.map(times),
+            planes: detection.planes.iter().map(PlaneRecord::from).collect(),
+        }
+    }
+}
+
+fn parameters(report: &Report<'_>) -> Map<String, Value> {
+    let pair = |(param, &value): (&depthplanes::methods::Param, &f64)| {
+        let whole = param.kind != ParamKind::Real;
+        let number = if whole { Some(Number::from(value as i64)) } else { Number::from_f64(value) };
+        (param.name.to_string(), number.map_or(Value::Null, Value::Number))
+    };
+    report.method.params.iter().zip(report.parameters).map(pair).collect()
+}
+
+fn times(times: &Times) -> Map<String, Value> {
+    let spread = |name: &str, spread: &Spread| {
+        (name.to_string(), serde_json::to_value(spread).expect("two numbers are always JSON"))
+    };
+    let mut all: Map<String, Value> = [spread("total", &times.total)].into_iter().collect();
+    all.extend(times.stages.iter().map(|(name, stage)| spread(name, stage)));
+    all
+}
+
+impl From<Measure> for MeasureRecord {
+    fn from(measure: Measure) -> Self {
+        match measure {
+            Measure::Depth { metres } => MeasureRecord::Depth { metres_per_unit: metres },
+            Measure::InverseDepth { slope, offset } => {
+                MeasureRecord::InverseDepth { slope_per_m: slope, offset_per_m: offset }
+            }
+            Measure::Disparity => MeasureRecord::Disparity,
+        }
+    }
+}
+
+impl From<Intrinsics> for IntrinsicsRecord {
+    fn from(camera: Intrinsics) -> Self {
+        IntrinsicsRecord { fx: camera.fx, fy: camera.fy, cx: camera.cx, cy: camera.cy }
+    }
+}
+
+impl From<&Plane> for PlaneRecord {
+    fn from(plane: &Plane) -> Self {
+        let pixels = plane.bounding_box;
+        PlaneRecord {
+            label: plane.label,
+            pixel_count: plane.pixel_count,
+            share_of_valid: plane.share_of_valid,
+            bounding_box: BoxRecord {
+                u_min: pixels.u_min,
+                v_min: pixels.v_min,
+                u_max: pixels.u_max,
+                v_max: pixels.v_max,
+            },
+            centroid_px: plane.centroid,
+            fit: plane.fit.map(|fit| FitRecord { gradient: fit.gradient, offset: fit.offset, rms: fit.rms }),
+            metric: plane.metric.map(|metric| MetricRecord {
+                normal: metric.plane.normal,
+                distance_m: metric.plane.distance,
+                rms_m: metric.rms_m,
+                centroid_m: metric.centroid_m,
+                covariance: metric.covariance,
+            }),
+        }
+    }
+}
