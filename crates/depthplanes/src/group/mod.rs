@@ -31,6 +31,9 @@ pub struct LinkRule<T> {
     /// Largest difference. Integer maps: theta rounded down, which links the same pixels; `f32`
     /// maps: the nearest `f32`.
     pub(crate) theta: T,
+    /// The valid range's length for integers, where one comparison of `value - low` serves for both
+    /// ends; its high end for `f32`.
+    pub(crate) high_or_span: T,
 }
 
 impl<T: Pixel> LinkRule<T> {
@@ -43,7 +46,11 @@ impl<T: Pixel> LinkRule<T> {
             validity.low = T::from_f64(1.0);
         }
         if theta >= 0.0 {
-            Ok(LinkRule { validity, theta: T::floor_from(theta) })
+            Ok(LinkRule {
+                validity,
+                theta: T::floor_from(theta),
+                high_or_span: T::high_or_span(validity.low, validity.high),
+            })
         } else {
             Err(Error::Parameter { name: "theta", given: theta, accepted: "a number from 0 up, in map units".into() })
         }

@@ -154,18 +154,23 @@ fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
     let valid = &strip.valid[row * words..][..words];
     let starts = &mut strip.starts[row * words..][..words];
     let scratch = &mut strip.scratch;
-    let left = &mut scratch.left[..words + 1];
+    let left = &mut scratch.left[..words];
     let ends = &mut scratch.ends[..words];
     let before = &mut scratch.runs_before[..words];
-    link_left(valid, left, starts);
-    end_runs(valid, left, ends);
     let first = strip.forest.len() as u32;
-    let (mut runs, mut pixels) = (first, 0);
+    let (mut runs, mut pixels, mut before_word) = (first, 0, 0);
     for w in 0..words {
-        before[w] = runs;
+        // A link needs both pixels valid; a run ends where the next pixel is not linked to it.
+        let linked = left[w] & valid[w] & (valid[w] << 1 | before_word >> 63);
+        if w > 0 {
+            ends[w - 1] = before_word & !(left[w - 1] >> 1 | linked << 63);
+        }
+        (left[w], starts[w], before[w]) = (linked, valid[w] & !linked, runs);
+        before_word = valid[w];
         runs += starts[w].count_ones();
         pixels += valid[w].count_ones();
     }
+    ends[words - 1] = before_word & !(left[words - 1] >> 1);
     strip.valid_pixels += pixels as usize;
     strip.row_first_run.push(first);
     strip.forest.extend(first..runs);
@@ -176,25 +181,6 @@ fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
     }
     let columns = scratch.first_column.iter().zip(&scratch.last_column);
     strip.lengths.extend(columns.map(|(first, last)| last - first + 1));
-}
-
-/// Links pixels to their left neighbours where both are valid; pixels without that link start runs.
-#[inline(always)]
-fn link_left(valid: &[u64], left: &mut [u64], starts: &mut [u64]) {
-    let mut valid_left = 0;
-    for w in 0..valid.len() {
-        left[w] &= valid[w] & (valid[w] << 1 | valid_left);
-        starts[w] = valid[w] & !left[w];
-        valid_left = valid[w] >> 63;
-    }
-}
-
-/// A run ends at a valid pixel whose right neighbour is not linked to it. `left` has one word more.
-#[inline(always)]
-fn end_runs(valid: &[u64], left: &[u64], ends: &mut [u64]) {
-    for w in 0..valid.len() {
-        ends[w] = valid[w] & !(left[w] >> 1 | left[w + 1] << 63);
-    }
 }
 
 /// Unites the runs of a row with the runs above that they touch.

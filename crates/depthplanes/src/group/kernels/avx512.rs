@@ -22,12 +22,12 @@ kernel!("avx512", Avx512, "avx512f,avx512bw,avx512vl,avx512vbmi2,avx512bitalg,bm
 /// are within theta of each other.
 macro_rules! masks {
     ($name:ident, $t:ty, $lanes:literal, $load:path, $set:path,
-     |$a:ident, $b:ident, $zero:ident, $sentinel:ident, $low:ident, $high:ident, $theta:ident| $valid:expr, $close:expr) => {
+     |$a:ident, $b:ident, $sentinel:ident, $low:ident, $high:ident, $theta:ident| $valid:expr, $close:expr) => {
         #[target_feature(enable = "avx512f,avx512bw,avx512vl,bmi1,bmi2")]
         fn $name(row: &[$t], up: &[$t], rule: &LinkRule<$t>, out: RowMasks<'_>) {
             let v = &rule.validity;
-            let [$zero, $sentinel, $low, $high, $theta] =
-                [0 as $t, v.sentinel, v.low, v.high, rule.theta].map(|x| $set(x as _));
+            let [$sentinel, $low, $high, $theta] =
+                [v.sentinel, v.low, rule.high_or_span, rule.theta].map(|x| $set(x as _));
             let valid = |here: *const $t| {
                 (0..64).step_by($lanes).fold(0u64, |word, lane| {
                     // SAFETY: `words` passes pointers to 64 pixels.
@@ -54,8 +54,8 @@ masks!(
     64,
     _mm512_loadu_si512,
     _mm512_set1_epi8,
-    |a, b, _zero, sentinel, low, high, theta| _mm512_mask_cmpneq_epi8_mask(
-        _mm512_cmpeq_epi8_mask(a, _mm512_min_epu8(_mm512_max_epu8(a, low), high)),
+    |a, b, sentinel, low, span, theta| _mm512_mask_cmpneq_epi8_mask(
+        _mm512_cmple_epu8_mask(_mm512_sub_epi8(a, low), span),
         a,
         sentinel
     ),
@@ -68,8 +68,8 @@ masks!(
     32,
     _mm512_loadu_si512,
     _mm512_set1_epi16,
-    |a, b, _zero, sentinel, low, high, theta| _mm512_mask_cmpneq_epi16_mask(
-        _mm512_cmpeq_epi16_mask(a, _mm512_min_epu16(_mm512_max_epu16(a, low), high)),
+    |a, b, sentinel, low, span, theta| _mm512_mask_cmpneq_epi16_mask(
+        _mm512_cmple_epu16_mask(_mm512_sub_epi16(a, low), span),
         a,
         sentinel
     ),
@@ -82,7 +82,7 @@ masks!(
     16,
     _mm512_loadu_ps,
     _mm512_set1_ps,
-    |a, b, zero, sentinel, low, high, theta| _mm512_cmp_ps_mask::<_CMP_NEQ_UQ>(a, zero)
+    |a, b, sentinel, low, high, theta| _mm512_cmp_ps_mask::<_CMP_NEQ_UQ>(a, _mm512_setzero_ps())
         & _mm512_cmp_ps_mask::<_CMP_NEQ_UQ>(a, sentinel)
         & _mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, low)
         & _mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, high),
