@@ -137,8 +137,8 @@ impl Isa for Avx2 {
         unsafe { masks_f32(row, up, rule, out) }
     }
     #[inline(always)]
-    fn positions(mask: &[u64], count: usize, out: &mut Vec<u16>) {
-        Portable::positions(mask, count, out);
+    fn positions(mask: &[u64], count: usize, list: &mut Vec<u16>) {
+        Portable::positions(mask, count, list);
     }
     #[inline(always)]
     fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
