@@ -52,23 +52,34 @@ pub(super) struct Strip {
     pub(super) first_label: usize,
     /// Valid pixels of the strip.
     pub(super) valid_pixels: usize,
+    /// Whether pixels without any link may be left out of the runs.
+    pub(super) leaves_out_singles: bool,
+    /// How many were.
+    pub(super) singles_left_out: usize,
     scratch: Scratch,
 }
 
-/// What only one row and the next need.
+/// What only a row and its neighbours need.
 #[derive(Debug, Default)]
 struct Scratch {
-    left: Vec<u64>,
-    left_above: Vec<u64>,
+    above: RowLinks,
+    here: RowLinks,
+    below: RowLinks,
     ends: Vec<u64>,
     contacts: Vec<u64>,
     later_contacts: Vec<u64>,
     orphans: Vec<u64>,
-    runs_before: Vec<u32>,
-    runs_before_above: Vec<u32>,
     first_column: Vec<u16>,
     last_column: Vec<u16>,
     inherited: Vec<u32>,
+}
+
+/// The links of one row, one bit a pixel, and the runs before each word.
+#[derive(Debug, Default)]
+struct RowLinks {
+    left: Vec<u64>,
+    up: Vec<u64>,
+    runs_before: Vec<u32>,
 }
 
 impl Strip {
@@ -86,12 +97,14 @@ impl Strip {
             reserve_to(per_label, height * width);
         }
         let scratch = &mut self.scratch;
-        let Scratch { left, left_above, ends, contacts, later_contacts, orphans, .. } = scratch;
-        for masks in [left, left_above, ends, contacts, later_contacts, orphans] {
-            masks.resize(words, 0);
+        for row in [&mut scratch.above, &mut scratch.here, &mut scratch.below] {
+            row.left.resize(words, 0);
+            row.up.resize(words, 0);
+            row.runs_before.resize(words, 0);
         }
-        for counts in [&mut scratch.runs_before, &mut scratch.runs_before_above] {
-            counts.resize(words, 0);
+        let Scratch { ends, contacts, later_contacts, orphans, .. } = scratch;
+        for masks in [ends, contacts, later_contacts, orphans] {
+            masks.resize(words, 0);
         }
         for columns in [&mut scratch.first_column, &mut scratch.last_column] {
             reserve_to(columns, width + SLACK);
@@ -131,34 +144,47 @@ fn bits(words: usize, word: impl Fn(usize) -> u64) -> impl Iterator<Item = u32> 
     })
 }
 
-/// Labels a strip, row by row: its masks, its runs, and a label for each.
+/// Labels a strip, row by row: its links, its runs, their contacts, and a label for each. Links are
+/// known one row ahead, to tell pixels without any.
 #[inline(always)]
 pub(super) fn scan<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>, strip: &mut Strip) {
-    strip.valid_pixels = 0;
+    (strip.valid_pixels, strip.singles_left_out) = (0, 0);
     strip.labels.resize(1 + SLACK, 0);
+    row_links::<I, T>(map, rule, strip, 0);
     for row in 0..strip.rows.len() {
-        row_masks::<I, T>(map, strip.rows.start + row, rule, strip);
+        let Scratch { above, here, below, .. } = &mut strip.scratch;
+        std::mem::swap(above, here);
+        std::mem::swap(here, below);
+        if row + 1 < strip.rows.len() {
+            row_links::<I, T>(map, rule, strip, row + 1);
+        }
         row_runs::<I>(strip, row);
         row_contacts(strip, row);
         row_labels::<I>(strip, row);
-        let scratch = &mut strip.scratch;
-        std::mem::swap(&mut scratch.left, &mut scratch.left_above);
-        std::mem::swap(&mut scratch.runs_before, &mut scratch.runs_before_above);
     }
     strip.row_first_run.push(1 + strip.run_count() as u32);
 }
 
-/// Masks of row v of the map, in `valid` and the scratch's `left` and `contacts`. The links lack the
-/// validity of the other side yet. The map's first row stands in for the row above it.
+/// Links of a row to the left and up, left in the scratch as those of the row below. The strip's first
+/// row has none upwards.
 #[inline(always)]
-fn row_masks<I: Isa, T: Pixel>(map: &DepthView<'_, T>, v: usize, rule: &LinkRule<T>, strip: &mut Strip) {
-    let words = strip.words;
-    let masks = RowMasks {
-        valid: &mut strip.valid[(v - strip.rows.start) * words..][..words],
-        close_left: &mut strip.scratch.left[..words],
-        close_up: &mut strip.scratch.contacts[..words],
-    };
+fn row_links<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>, strip: &mut Strip, row: usize) {
+    let (words, v) = (strip.words, strip.rows.start + row);
+    let (above, here) = strip.valid[row.saturating_sub(1) * words..(row + 1) * words].split_at_mut(row.min(1) * words);
+    let RowLinks { left, up, .. } = &mut strip.scratch.below;
+    let masks = RowMasks { valid: here, close_left: left, close_up: up };
     T::masks::<I>(map.row(v), map.row(v.saturating_sub(1)), rule, masks);
+    let (mut pixels, mut valid_left) = (0, 0);
+    for w in 0..words {
+        left[w] &= here[w] & (here[w] << 1 | valid_left);
+        valid_left = here[w] >> 63;
+        pixels += here[w].count_ones();
+    }
+    strip.valid_pixels += pixels as usize;
+    match above {
+        [] => up.fill(0),
+        _ => (0..words).for_each(|w| up[w] &= here[w] & above[w]),
+    }
 }
 
 /// Lists the runs of a row: a run starts at a valid pixel that is not linked to its left, and ends
@@ -167,45 +193,67 @@ fn row_masks<I: Isa, T: Pixel>(map: &DepthView<'_, T>, v: usize, rule: &LinkRule
 fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
     let words = strip.words;
     let first = 1 + strip.run_count() as u32;
-    let valid = &strip.valid[row * words..][..words];
+    let valid = &mut strip.valid[row * words..][..words];
     let starts = &mut strip.starts[row * words..][..words];
-    let scratch = &mut strip.scratch;
-    let left = &mut scratch.left[..words];
-    let ends = &mut scratch.ends[..words];
-    let before = &mut scratch.runs_before[..words];
-    let (mut runs, mut pixels, mut before_word) = (first, 0, 0);
-    for w in 0..words {
-        // A link needs both pixels valid; a run ends where the next pixel is not linked to it.
-        let linked = left[w] & valid[w] & (valid[w] << 1 | before_word >> 63);
-        if w > 0 {
-            ends[w - 1] = before_word & !(left[w - 1] >> 1 | linked << 63);
-        }
-        (left[w], starts[w], before[w]) = (linked, valid[w] & !linked, runs);
-        before_word = valid[w];
-        runs += starts[w].count_ones();
-        pixels += valid[w].count_ones();
+    let Scratch { here, below, ends, first_column, last_column, .. } = &mut strip.scratch;
+    let mut end = start_runs(valid, &here.left, starts, ends, &mut here.runs_before, first);
+    let is_inner = row > 0 && row + 1 < strip.rows.len(); // outer rows have links to other strips
+    if strip.leaves_out_singles && is_inner && (end - first) as usize * DENSE > strip.width {
+        let before = end;
+        leave_out_singles(valid, starts, ends, &here.up, &below.up);
+        end = start_runs(valid, &here.left, starts, ends, &mut here.runs_before, first);
+        strip.singles_left_out += (before - end) as usize;
     }
-    ends[words - 1] = before_word & !(left[words - 1] >> 1);
-    strip.valid_pixels += pixels as usize;
     strip.row_first_run.push(first);
-    strip.labels.resize(runs as usize + SLACK, 0);
-    I::positions(starts, (runs - first) as usize, &mut scratch.first_column);
-    I::positions(ends, (runs - first) as usize, &mut scratch.last_column);
+    strip.labels.resize(end as usize + SLACK, 0);
+    I::positions(starts, (end - first) as usize, first_column);
+    I::positions(ends, (end - first) as usize, last_column);
+}
+
+/// Where runs start and end, and how many start before each word, from `first` on; one more than the
+/// last run.
+#[inline(always)]
+fn start_runs(
+    valid: &[u64],
+    left: &[u64],
+    starts: &mut [u64],
+    ends: &mut [u64],
+    before: &mut [u32],
+    first: u32,
+) -> u32 {
+    let mut end = first;
+    let mut linked = left[0];
+    for w in 0..valid.len() {
+        let next = if w + 1 < valid.len() { left[w + 1] } else { 0 };
+        starts[w] = valid[w] & !linked;
+        ends[w] = valid[w] & !(linked >> 1 | next << 63);
+        before[w] = end;
+        end += starts[w].count_ones();
+        linked = next;
+    }
+    end
+}
+
+/// Takes pixels that are a run of their own and linked neither up nor down for missing: each is a
+/// group that nobody asked for, and noise makes many.
+#[inline(always)]
+fn leave_out_singles(valid: &mut [u64], starts: &[u64], ends: &[u64], up: &[u64], up_below: &[u64]) {
+    for w in 0..valid.len() {
+        valid[w] &= !(starts[w] & ends[w]) | up[w] | up_below[w];
+    }
 }
 
 /// Finds where the runs of a row touch those above: the first contact of each run, its later ones,
 /// and the runs without any.
 #[inline(always)]
 fn row_contacts(strip: &mut Strip, row: usize) {
-    let words = strip.words;
-    let Scratch { left, left_above, ends, contacts, later_contacts, orphans, .. } = &mut strip.scratch;
+    let Scratch { above, here, ends, contacts, later_contacts, orphans, .. } = &mut strip.scratch;
     if row == 0 {
         contacts.fill(0);
     } else {
-        let (above, here) = strip.valid[(row - 1) * words..][..2 * words].split_at(words);
-        find_contacts(contacts, here, above, left, left_above);
+        find_contacts(&here.up, &here.left, &above.left, contacts);
     }
-    split_contacts(contacts, later_contacts, left, ends, orphans);
+    split_contacts(contacts, later_contacts, &here.left, ends, orphans);
 }
 
 /// Labels the runs of a row: from the first contact with a run above, which needs no search, or anew;
@@ -216,10 +264,10 @@ fn row_labels<I: Isa>(strip: &mut Strip, row: usize) {
     let (first, end) = (strip.row_first_run[row] as usize, strip.labels.len() - SLACK);
     let scratch = &mut strip.scratch;
     let (labels, forest, sizes) = (&mut strip.labels[..], &mut strip.forest, &mut strip.sizes);
-    let here = Row { starts: &strip.starts[row * words..][..words], before: &scratch.runs_before };
+    let here = Row { starts: &strip.starts[row * words..][..words], before: &scratch.here.runs_before };
     let above_words = row.saturating_sub(1) * words..;
-    let above = Row { starts: &strip.starts[above_words][..words], before: &scratch.runs_before_above };
-    let links = Links { contacts: &scratch.contacts, orphans: &scratch.orphans, ends: &scratch.ends, left: &scratch.left };
+    let above = Row { starts: &strip.starts[above_words][..words], before: &scratch.above.runs_before };
+    let links = Links { contacts: &scratch.contacts, orphans: &scratch.orphans, ends: &scratch.ends, left: &scratch.here.left };
     let new_label = forest.len() as u32;
     let new_labels = if I::HAS_DENSE_LABELS && row > 0 && (end - first) * DENSE > strip.width {
         let first_above = strip.row_first_run[row - 1] as usize;
@@ -301,15 +349,14 @@ fn next_bit(bits: &mut u64) -> Option<u64> {
     any.then_some(up_to)
 }
 
-/// Of the pixels that are close to the one above, in place those where two runs first touch: both
-/// valid, and without a left neighbour in the same two runs that is linked upwards too.
+/// Pixels at which two runs first touch: linked upwards, and without a left neighbour in the same two
+/// runs that is too.
 #[inline(always)]
-fn find_contacts(close_up: &mut [u64], valid: &[u64], valid_above: &[u64], left: &[u64], left_above: &[u64]) {
+fn find_contacts(up: &[u64], left: &[u64], left_above: &[u64], contacts: &mut [u64]) {
     let mut up_left = 0;
-    for w in 0..close_up.len() {
-        let up = close_up[w] & valid[w] & valid_above[w];
-        close_up[w] = up & !((up << 1 | up_left) & left[w] & left_above[w]);
-        up_left = up >> 63;
+    for w in 0..contacts.len() {
+        contacts[w] = up[w] & !((up[w] << 1 | up_left) & left[w] & left_above[w]);
+        up_left = up[w] >> 63;
     }
 }
 
@@ -343,16 +390,18 @@ pub(super) fn stitch<I: Isa, T: Pixel>(
     lower: &mut Strip,
     forest: &mut [u32],
 ) {
-    row_masks::<I, T>(map, lower.rows.start, rule, lower);
-    let (words, last_row) = (lower.words, upper.rows.len() - 1);
+    let (words, v, last_row) = (lower.words, lower.rows.start, upper.rows.len() - 1);
     let (starts, starts_above) = (&lower.starts[..words], &upper.starts[last_row * words..]);
     let (valid, valid_above) = (&lower.valid[..words], &upper.valid[last_row * words..]);
-    let Scratch { left, left_above, contacts, .. } = &mut lower.scratch;
+    let Scratch { above, here, ends: unused, contacts, .. } = &mut lower.scratch;
+    let masks = RowMasks { valid: unused, close_left: &mut here.left, close_up: &mut here.up };
+    T::masks::<I>(map.row(v), map.row(v - 1), rule, masks);
     for w in 0..words {
-        left[w] = valid[w] & !starts[w];
-        left_above[w] = valid_above[w] & !starts_above[w];
+        here.up[w] &= valid[w] & valid_above[w];
+        here.left[w] = valid[w] & !starts[w];
+        above.left[w] = valid_above[w] & !starts_above[w];
     }
-    find_contacts(contacts, valid, valid_above, left, left_above);
+    find_contacts(&here.up, &here.left, &above.left, contacts);
     let (mut runs, mut runs_above) = (0, upper.row_first_run[last_row] as usize - 1);
     for w in 0..words {
         let mut contacts = contacts[w];

@@ -154,7 +154,9 @@ impl TryFrom<Ngaf> for Box<dyn Method> {
 
     fn try_from(params: Ngaf) -> Result<Self> {
         INFO.check(&params.values())?;
-        Ok(Box::new(Runner { params, ..Runner::default() }))
+        let mut runner = Runner { params, ..Runner::default() };
+        runner.grouper.leave_out_singles(params.min >= 1);
+        Ok(Box::new(runner))
     }
 }
 
