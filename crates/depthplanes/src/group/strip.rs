@@ -98,7 +98,7 @@ impl Strip {
         }
         let scratch = &mut self.scratch;
         for row in [&mut scratch.above, &mut scratch.here, &mut scratch.below] {
-            row.left.resize(words, 0);
+            row.left.resize(words + 1, 0); // the last word stays 0
             row.up.resize(words, 0);
             row.runs_before.resize(words, 0);
         }
@@ -159,8 +159,8 @@ pub(super) fn scan<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>,
             row_links::<I, T>(map, rule, strip, row + 1);
         }
         row_runs::<I>(strip, row);
-        row_contacts(strip, row);
-        row_labels::<I>(strip, row);
+        let found = row_contacts(strip);
+        row_labels::<I>(strip, row, &found);
     }
     strip.row_first_run.push(1 + strip.run_count() as u32);
 }
@@ -172,19 +172,19 @@ fn row_links<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>, strip
     let (words, v) = (strip.words, strip.rows.start + row);
     let (above, here) = strip.valid[row.saturating_sub(1) * words..(row + 1) * words].split_at_mut(row.min(1) * words);
     let RowLinks { left, up, .. } = &mut strip.scratch.below;
+    let left = &mut left[..words];
     let masks = RowMasks { valid: here, close_left: left, close_up: up };
     T::masks::<I>(map.row(v), map.row(v.saturating_sub(1)), rule, masks);
+    // Both sides of a link are valid. Above the strip there is nothing.
     let (mut pixels, mut valid_left) = (0, 0);
     for w in 0..words {
+        let above = if row == 0 { 0 } else { above[w] };
         left[w] &= here[w] & (here[w] << 1 | valid_left);
+        up[w] &= here[w] & above;
         valid_left = here[w] >> 63;
         pixels += here[w].count_ones();
     }
     strip.valid_pixels += pixels as usize;
-    match above {
-        [] => up.fill(0),
-        _ => (0..words).for_each(|w| up[w] &= here[w] & above[w]),
-    }
 }
 
 /// Lists the runs of a row: a run starts at a valid pixel that is not linked to its left, and ends
@@ -211,7 +211,7 @@ fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
 }
 
 /// Where runs start and end, and how many start before each word, from `first` on; one more than the
-/// last run.
+/// last run. `left` has a word 0 more.
 #[inline(always)]
 fn start_runs(
     valid: &[u64],
@@ -221,15 +221,15 @@ fn start_runs(
     before: &mut [u32],
     first: u32,
 ) -> u32 {
+    let words = valid.len();
+    let (left, starts, ends, before) =
+        (&left[..words + 1], &mut starts[..words], &mut ends[..words], &mut before[..words]);
     let mut end = first;
-    let mut linked = left[0];
-    for w in 0..valid.len() {
-        let next = if w + 1 < valid.len() { left[w + 1] } else { 0 };
-        starts[w] = valid[w] & !linked;
-        ends[w] = valid[w] & !(linked >> 1 | next << 63);
+    for w in 0..words {
+        starts[w] = valid[w] & !left[w];
+        ends[w] = valid[w] & !(left[w] >> 1 | left[w + 1] << 63);
         before[w] = end;
         end += starts[w].count_ones();
-        linked = next;
     }
     end
 }
@@ -246,20 +246,15 @@ fn leave_out_singles(valid: &mut [u64], starts: &[u64], ends: &[u64], up: &[u64]
 /// Finds where the runs of a row touch those above: the first contact of each run, its later ones,
 /// and the runs without any.
 #[inline(always)]
-fn row_contacts(strip: &mut Strip, row: usize) {
+fn row_contacts(strip: &mut Strip) -> Found {
     let Scratch { above, here, ends, contacts, later_contacts, orphans, .. } = &mut strip.scratch;
-    if row == 0 {
-        contacts.fill(0);
-    } else {
-        find_contacts(&here.up, &here.left, &above.left, contacts);
-    }
-    split_contacts(contacts, later_contacts, &here.left, ends, orphans);
+    find_contacts(here, &above.left, ends, [contacts, later_contacts, orphans])
 }
 
 /// Labels the runs of a row: from the first contact with a run above, which needs no search, or anew;
 /// then unites the labels of later contacts.
 #[inline(always)]
-fn row_labels<I: Isa>(strip: &mut Strip, row: usize) {
+fn row_labels<I: Isa>(strip: &mut Strip, row: usize, found: &Found) {
     let words = strip.words;
     let (first, end) = (strip.row_first_run[row] as usize, strip.labels.len() - SLACK);
     let scratch = &mut strip.scratch;
@@ -267,18 +262,26 @@ fn row_labels<I: Isa>(strip: &mut Strip, row: usize) {
     let here = Row { starts: &strip.starts[row * words..][..words], before: &scratch.here.runs_before };
     let above_words = row.saturating_sub(1) * words..;
     let above = Row { starts: &strip.starts[above_words][..words], before: &scratch.above.runs_before };
-    let links = Links { contacts: &scratch.contacts, orphans: &scratch.orphans, ends: &scratch.ends, left: &scratch.here.left };
+    let links =
+        Links { contacts: &scratch.contacts, orphans: &scratch.orphans, ends: &scratch.ends, left: &scratch.here.left };
     let new_label = forest.len() as u32;
     let new_labels = if I::HAS_DENSE_LABELS && row > 0 && (end - first) * DENSE > strip.width {
         let first_above = strip.row_first_run[row - 1] as usize;
         let (labels_above, labels_here) = labels.split_at_mut(first);
-        I::dense_labels(&links, above.starts, &labels_above[first_above - 1..], &mut scratch.inherited, labels_here, new_label)
+        I::dense_labels(
+            &links,
+            above.starts,
+            &labels_above[first_above - 1..],
+            &mut scratch.inherited,
+            labels_here,
+            new_label,
+        )
     } else {
-        sparse_labels(&links, &here, &above, labels, new_label)
+        sparse_labels(&links, &here, &above, labels, new_label, found.orphans)
     };
     forest.extend(new_label..new_label + new_labels);
     sizes.resize(forest.len(), 0);
-    for w in 0..words {
+    for w in 0..if found.later_contacts { words } else { 0 } {
         let mut later = scratch.later_contacts[w];
         while let Some(up_to) = next_bit(&mut later) {
             forest::unite(forest, labels[here.run_at(w, up_to)], labels[above.run_at(w, up_to)]);
@@ -319,7 +322,14 @@ impl Row<'_> {
 
 /// Labels runs one by one; how many labels are new.
 #[inline(always)]
-fn sparse_labels(links: &Links<'_>, here: &Row<'_>, above: &Row<'_>, labels: &mut [u32], new_label: u32) -> u32 {
+fn sparse_labels(
+    links: &Links<'_>,
+    here: &Row<'_>,
+    above: &Row<'_>,
+    labels: &mut [u32],
+    new_label: u32,
+    any_orphans: bool,
+) -> u32 {
     for w in 0..here.starts.len() {
         let mut contacts = links.contacts[w];
         while let Some(up_to) = next_bit(&mut contacts) {
@@ -327,7 +337,7 @@ fn sparse_labels(links: &Links<'_>, here: &Row<'_>, above: &Row<'_>, labels: &mu
         }
     }
     let mut new_labels = 0;
-    for w in 0..here.starts.len() {
+    for w in 0..if any_orphans { here.starts.len() } else { 0 } {
         let mut orphans = links.orphans[w];
         while let Some(up_to) = next_bit(&mut orphans) {
             // An orphan is marked at its end. A run that reaches into the word ends in it first.
@@ -349,36 +359,38 @@ fn next_bit(bits: &mut u64) -> Option<u64> {
     any.then_some(up_to)
 }
 
-/// Pixels at which two runs first touch: linked upwards, and without a left neighbour in the same two
-/// runs that is too.
-#[inline(always)]
-fn find_contacts(up: &[u64], left: &[u64], left_above: &[u64], contacts: &mut [u64]) {
-    let mut up_left = 0;
-    for w in 0..contacts.len() {
-        contacts[w] = up[w] & !((up[w] << 1 | up_left) & left[w] & left_above[w]);
-        up_left = up[w] >> 63;
-    }
-}
-
-/// Leaves in `contacts` each run's first and moves the others to `later`; marks the runs without any
-/// in `orphans`, at their ends.
+/// Finds the pixels at which two runs first touch: linked upwards, and without a left neighbour in the
+/// same two runs that is too. Of these, the first of each run go to `contacts`, the others to `later`;
+/// runs without any are marked in `orphans`, at their ends.
 ///
 /// A run's pixels behind its first are a block of ones in `left`. Adding a one to a block carries
 /// through to its end, so the ones that the sum clears lie behind the contact that was added.
 #[inline(always)]
-fn split_contacts(contacts: &mut [u64], later: &mut [u64], left: &[u64], ends: &[u64], orphans: &mut [u64]) {
-    let (mut contact_left, mut carry) = (0, false);
-    for w in 0..contacts.len() {
-        let behind = (contacts[w] << 1 | contact_left) & left[w];
-        contact_left = contacts[w] >> 63;
+fn find_contacts(here: &RowLinks, left_above: &[u64], ends: &[u64], out: [&mut [u64]; 3]) -> Found {
+    let words = ends.len();
+    let [contacts, later, orphans] = out.map(|masks| &mut masks[..words]);
+    let (up, left, left_above) = (&here.up[..words], &here.left[..words], &left_above[..words]);
+    let (mut up_left, mut contact_left, mut carry) = (0, 0, false);
+    let (mut any_later, mut any_orphans) = (0, 0);
+    for w in 0..words {
+        let contact = up[w] & !((up[w] << 1 | up_left) & left[w] & left_above[w]);
+        let behind = (contact << 1 | contact_left) & left[w];
         let (sum, carry_1) = left[w].overflowing_add(behind);
         let (sum, carry_2) = sum.overflowing_add(carry.into());
-        carry = carry_1 | carry_2;
         let covered = (left[w] & !sum) | behind;
-        orphans[w] = ends[w] & !(contacts[w] | covered);
-        later[w] = contacts[w] & covered;
-        contacts[w] &= !covered;
+        (up_left, contact_left, carry) = (up[w] >> 63, contact >> 63, carry_1 | carry_2);
+        (contacts[w], later[w]) = (contact & !covered, contact & covered);
+        orphans[w] = ends[w] & !(contact | covered);
+        any_orphans |= orphans[w];
+        any_later |= later[w];
     }
+    Found { orphans: any_orphans != 0, later_contacts: any_later != 0 }
+}
+
+/// What a row has of what many rows have not.
+struct Found {
+    orphans: bool,
+    later_contacts: bool,
 }
 
 /// Unites the labels on both sides of the border between two strips, in the forest of all strips.
@@ -393,18 +405,18 @@ pub(super) fn stitch<I: Isa, T: Pixel>(
     let (words, v, last_row) = (lower.words, lower.rows.start, upper.rows.len() - 1);
     let (starts, starts_above) = (&lower.starts[..words], &upper.starts[last_row * words..]);
     let (valid, valid_above) = (&lower.valid[..words], &upper.valid[last_row * words..]);
-    let Scratch { above, here, ends: unused, contacts, .. } = &mut lower.scratch;
-    let masks = RowMasks { valid: unused, close_left: &mut here.left, close_up: &mut here.up };
+    let Scratch { above, here, ends: unused, contacts, later_contacts, orphans, .. } = &mut lower.scratch;
+    let masks = RowMasks { valid: unused, close_left: &mut here.left[..words], close_up: &mut here.up };
     T::masks::<I>(map.row(v), map.row(v - 1), rule, masks);
     for w in 0..words {
         here.up[w] &= valid[w] & valid_above[w];
         here.left[w] = valid[w] & !starts[w];
         above.left[w] = valid_above[w] & !starts_above[w];
     }
-    find_contacts(&here.up, &here.left, &above.left, contacts);
+    find_contacts(here, &above.left, unused, [contacts, later_contacts, orphans]);
     let (mut runs, mut runs_above) = (0, upper.row_first_run[last_row] as usize - 1);
     for w in 0..words {
-        let mut contacts = contacts[w];
+        let mut contacts = contacts[w] | later_contacts[w];
         while let Some(up_to) = next_bit(&mut contacts) {
             let run = |before: usize, starts: u64| before + (starts & up_to).count_ones() as usize;
             let here = lower.labels[run(runs, starts[w])] + lower.first_label as u32;

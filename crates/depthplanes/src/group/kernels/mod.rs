@@ -54,7 +54,8 @@ pub trait Isa {
 
     /// Writes labels of part of a row: 0 where not valid, else the label of the pixel's run.
     /// `labels[i]` belongs to the i-th run that starts in it, `labels[0]` to one that reaches into it;
-    /// there is [`SLACK`] to spare.
+    /// there is room for a
+    /// label for each pixel and [`SLACK`] to spare.
     fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]);
 }
 
