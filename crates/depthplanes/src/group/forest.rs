@@ -19,22 +19,21 @@ pub(super) fn unite(parent: &mut [u32], a: u32, b: u32) {
     parent[a.max(b) as usize] = a.min(b);
 }
 
-/// Turns a forest into components, in place: every element's entry becomes its component, counted in
-/// the order of first elements, and `sizes` the sum of each component's `weights`.
+/// Turns a forest into groups, in place: every element's entry becomes its group, counted in the order
+/// of first elements, and `sizes` the sum of each group's `weights`.
 ///
-/// A parent comes before its children, so its component is known when theirs is asked for.
-#[inline(always)]
+/// A parent comes before its children, so its group is known when theirs is asked for.
 pub(super) fn flatten(forest: &mut [u32], weights: impl Iterator<Item = u32>, sizes: &mut Vec<u32>) {
-    let mut components = 0;
+    let mut groups = 0;
     sizes.clear();
     sizes.resize(forest.len(), 0);
     for (element, weight) in (0..forest.len()).zip(weights) {
         let parent = forest[element] as usize;
-        let (is_root, component_of_parent) = (parent == element, forest[parent]);
-        let component = if is_root { components } else { component_of_parent };
-        forest[element] = component;
-        sizes[component as usize] += weight;
-        components += u32::from(is_root);
+        let (is_root, group_of_parent) = (parent == element, forest[parent]);
+        let group = if is_root { groups } else { group_of_parent };
+        forest[element] = group;
+        sizes[group as usize] += weight;
+        groups += u32::from(is_root);
     }
-    sizes.truncate(components as usize);
+    sizes.truncate(groups as usize);
 }
