@@ -199,13 +199,15 @@ impl<'a, T: Pixel> DepthView<'a, T> {
         self
     }
 
-    /// Only values within `low..=high` (map units) are valid.
+    /// Only values within `low..=high` (map units) are valid. An infinite end means no limit on that
+    /// side; the infinities themselves stay missing.
     ///
     /// # Errors
     /// [`Error::ValidRange`] unless `low < high`.
     pub fn valid_range(mut self, low: T, high: T) -> Result<Self> {
         if low < high {
-            (self.validity.low, self.validity.high) = (low, high);
+            self.validity.low = if low < T::LOWEST { T::LOWEST } else { low };
+            self.validity.high = if high > T::HIGHEST { T::HIGHEST } else { high };
             Ok(self)
         } else {
             Err(Error::ValidRange { low: low.into(), high: high.into() })

@@ -41,6 +41,7 @@ impl Selection {
         reserve_to(&mut self.label_of_provisional, most_groups);
         let found = groups.sizes().iter().filter(|&&size| size > min).count();
         if found > MAX_PLANES {
+            self.label_groups(groups);
             return Err(Error::TooManyPlanes { found });
         }
         // Most groups of a noisy map are tiny: a block of them is passed over by one test.
