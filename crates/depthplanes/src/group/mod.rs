@@ -233,16 +233,14 @@ impl Groups {
         self.strips.iter().map(Strip::run_count).sum()
     }
 
-    /// All runs in raster order.
-    pub fn runs(&self) -> impl Iterator<Item = Run> + '_ {
-        self.strips.iter().flat_map(move |strip| {
+    /// Calls `visit` for each run in raster order.
+    pub fn each_run(&self, mut visit: impl FnMut(Run)) {
+        for strip in &self.strips {
             let groups = &self.group_of_label[strip.first_label..];
-            let columns = (0..strip.rows.len()).flat_map(move |row| strip.columns(row).map(move |run| (row, run)));
-            columns.zip(strip.labels()).map(move |((row, (u_first, u_last)), &label)| {
-                let group = groups[label as usize];
-                Run { v: (strip.rows.start + row) as u32, u_first, u_last, group }
-            })
-        })
+            strip.each_run(|v, u_first, u_last, label| {
+                visit(Run { v: v as u32, u_first, u_last, group: groups[label as usize] });
+            });
+        }
     }
 
     /// The pixels of each group, in raster order of the groups' first pixels.

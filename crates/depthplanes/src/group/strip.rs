@@ -122,26 +122,36 @@ impl Strip {
         &self.labels[1..1 + self.run_count()]
     }
 
-    /// First and last column of each run of a row.
-    pub(super) fn columns(&self, row: usize) -> impl Iterator<Item = (u32, u32)> + '_ {
-        let words = row * self.words..(row + 1) * self.words;
-        let (valid, starts) = (&self.valid[words.clone()], &self.starts[words]);
-        let left = |w: usize| if w < valid.len() { valid[w] & !starts[w] } else { 0 };
-        let ends = move |w: usize| valid[w] & !(left(w) >> 1 | left(w + 1) << 63);
-        bits(starts.len(), |w| starts[w]).zip(bits(starts.len(), ends))
+    /// Calls `visit` for each run in raster order with its row, first and last column, and provisional
+    /// label.
+    #[inline]
+    pub(super) fn each_run(&self, mut visit: impl FnMut(usize, u32, u32, u32)) {
+        let mut labels = self.labels().iter();
+        for (row, v) in self.rows.clone().enumerate() {
+            let words = row * self.words..(row + 1) * self.words;
+            let (valid, starts) = (&self.valid[words.clone()], &self.starts[words]);
+            let left = |w: usize| if w < valid.len() { valid[w] & !starts[w] } else { 0 };
+            let mut open = 0; // first column of the run that reaches into the word
+            for w in 0..valid.len() {
+                let mut ends = valid[w] & !(left(w) >> 1 | left(w + 1) << 63);
+                let mut rest = starts[w];
+                while ends != 0 {
+                    let last = ends.trailing_zeros();
+                    let before = rest & (u64::MAX >> (63 - last));
+                    if before != 0 {
+                        open = w as u32 * 64 + before.trailing_zeros();
+                        rest &= rest - 1;
+                    }
+                    let &label = labels.next().expect("a label for each run");
+                    visit(v, open, w as u32 * 64 + last, label);
+                    ends &= ends - 1;
+                }
+                if rest != 0 {
+                    open = w as u32 * 64 + rest.trailing_zeros();
+                }
+            }
+        }
     }
-}
-
-/// Positions of the set bits of some words, in order.
-fn bits(words: usize, word: impl Fn(usize) -> u64) -> impl Iterator<Item = u32> {
-    (0..words).flat_map(move |w| {
-        let mut rest = word(w);
-        std::iter::from_fn(move || {
-            let bit = rest.trailing_zeros();
-            rest &= rest.wrapping_sub(1);
-            (bit < 64).then_some(w as u32 * 64 + bit)
-        })
-    })
 }
 
 /// Labels a strip, row by row: its links, its runs, their contacts, and a label for each. Links are

@@ -197,13 +197,15 @@ impl Runner {
         job.done("group");
         selection.select(groups, params.min)?; // section 3d
         job.done("select");
-        describer.tally(&map, selection.runs(groups), params.margin, &job.sensor);
+        let mut runs = selection.runs(groups);
+        describer.tally(&map, runs, params.margin, &job.sensor);
         if params.has_conditions() {
             selection.retain(groups, |index| params.accepts(&describer.tallies()[index]));
             describer.retain(|tally| params.accepts(tally));
+            runs = selection.runs(groups);
         }
         let valid = groups.valid_pixels();
-        describer.describe(&map, selection.runs(groups), &job.sensor, valid, &mut out.planes);
+        describer.describe(&map, runs, &job.sensor, valid, &mut out.planes);
         job.done("fit");
         selection.paint(groups, &mut out.labels);
         (out.width, out.height) = (map.width(), map.height());
