@@ -12,6 +12,7 @@
 
 mod forest;
 mod kernels;
+mod labels;
 mod strip;
 
 use crate::error::{Error, Result};

@@ -5,6 +5,7 @@
 //! u / 64, so "left" is one bit lower.
 
 use super::kernels::{Isa, SLACK};
+use super::labels::{RowLinks, Scratch, label_runs, next_bit};
 use super::{LinkRule, forest, reserve_to};
 use crate::map::{DepthView, Pixel};
 use std::ops::Range;
@@ -19,9 +20,9 @@ pub struct RowMasks<'a> {
     pub close_up: &'a mut [u64],
 }
 
-/// A row is dense if it has more runs than one in this many pixels; measured on two processors' worth
-/// of frames from 5,000 to 250,000 runs, the break-even is flat around it.
-const DENSE: usize = 6;
+/// A row is dense if it has more runs than one in this many pixels. Set where labelling runs many at a
+/// time begins to pay; frames of 5,000 to 250,000 runs take the same time from 4 to 10.
+pub(super) const DENSE: usize = 6;
 
 /// What a strip knows after [`scan`].
 ///
@@ -43,7 +44,7 @@ pub(super) struct Strip {
     /// For each row the first of its runs, counted within the strip from 1; one more at the end.
     pub(super) row_first_run: Vec<u32>,
     /// Provisional label of each run, counted from 1, and [`SLACK`] elements more to read and write.
-    labels: Vec<u32>,
+    pub(super) labels: Vec<u32>,
     /// Forest over the provisional labels.
     pub(super) forest: Vec<u32>,
     /// Pixels of each provisional label.
@@ -56,30 +57,7 @@ pub(super) struct Strip {
     pub(super) leaves_out_singles: bool,
     /// How many were.
     pub(super) singles_left_out: usize,
-    scratch: Scratch,
-}
-
-/// What only a row and its neighbours need.
-#[derive(Debug, Default)]
-struct Scratch {
-    above: RowLinks,
-    here: RowLinks,
-    below: RowLinks,
-    ends: Vec<u64>,
-    contacts: Vec<u64>,
-    later_contacts: Vec<u64>,
-    orphans: Vec<u64>,
-    first_column: Vec<u16>,
-    last_column: Vec<u16>,
-    inherited: Vec<u32>,
-}
-
-/// The links of one row, one bit a pixel, and the runs before each word.
-#[derive(Debug, Default)]
-struct RowLinks {
-    left: Vec<u64>,
-    up: Vec<u64>,
-    runs_before: Vec<u32>,
+    pub(super) scratch: Scratch,
 }
 
 impl Strip {
@@ -96,20 +74,7 @@ impl Strip {
         for per_label in [&mut self.forest, &mut self.sizes] {
             reserve_to(per_label, height * width);
         }
-        let scratch = &mut self.scratch;
-        for row in [&mut scratch.above, &mut scratch.here, &mut scratch.below] {
-            row.left.resize(words + 1, 0); // the last word stays 0
-            row.up.resize(words, 0);
-            row.runs_before.resize(words, 0);
-        }
-        let Scratch { ends, contacts, later_contacts, orphans, .. } = scratch;
-        for masks in [ends, contacts, later_contacts, orphans] {
-            masks.resize(words, 0);
-        }
-        for columns in [&mut scratch.first_column, &mut scratch.last_column] {
-            reserve_to(columns, width + SLACK);
-        }
-        scratch.inherited.resize(width + SLACK, 0);
+        self.scratch.prepare(width);
     }
 
     /// How many runs there are.
@@ -169,8 +134,8 @@ pub(super) fn scan<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>,
             row_links::<I, T>(map, rule, strip, row + 1);
         }
         row_runs::<I>(strip, row);
-        let found = row_contacts(strip);
-        row_labels::<I>(strip, row, &found);
+        strip.scratch.find_contacts();
+        label_runs::<I>(strip, row);
     }
     strip.row_first_run.push(1 + strip.run_count() as u32);
 }
@@ -205,7 +170,7 @@ fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
     let first = 1 + strip.run_count() as u32;
     let valid = &mut strip.valid[row * words..][..words];
     let starts = &mut strip.starts[row * words..][..words];
-    let Scratch { here, below, ends, first_column, last_column, .. } = &mut strip.scratch;
+    let Scratch { here, below, ends, columns: [first_columns, last_columns], .. } = &mut strip.scratch;
     let mut end = start_runs(valid, &here.left, starts, ends, &mut here.runs_before, first);
     let is_inner = row > 0 && row + 1 < strip.rows.len(); // outer rows have links to other strips
     if strip.leaves_out_singles && is_inner && (end - first) as usize * DENSE > strip.width {
@@ -216,8 +181,8 @@ fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
     }
     strip.row_first_run.push(first);
     strip.labels.resize(end as usize + SLACK, 0);
-    I::positions(starts, (end - first) as usize, first_column);
-    I::positions(ends, (end - first) as usize, last_column);
+    I::positions(starts, (end - first) as usize, first_columns);
+    I::positions(ends, (end - first) as usize, last_columns);
 }
 
 /// Where runs start and end, and how many start before each word, from `first` on; one more than the
@@ -253,156 +218,6 @@ fn leave_out_singles(valid: &mut [u64], starts: &[u64], ends: &[u64], up: &[u64]
     }
 }
 
-/// Finds where the runs of a row touch those above: the first contact of each run, its later ones,
-/// and the runs without any.
-#[inline(always)]
-fn row_contacts(strip: &mut Strip) -> Found {
-    let Scratch { above, here, ends, contacts, later_contacts, orphans, .. } = &mut strip.scratch;
-    find_contacts(here, &above.left, ends, [contacts, later_contacts, orphans])
-}
-
-/// Labels the runs of a row: from the first contact with a run above, which needs no search, or anew;
-/// then unites the labels of later contacts.
-#[inline(always)]
-fn row_labels<I: Isa>(strip: &mut Strip, row: usize, found: &Found) {
-    let words = strip.words;
-    let (first, end) = (strip.row_first_run[row] as usize, strip.labels.len() - SLACK);
-    let scratch = &mut strip.scratch;
-    let (labels, forest, sizes) = (&mut strip.labels[..], &mut strip.forest, &mut strip.sizes);
-    let here = Row { starts: &strip.starts[row * words..][..words], before: &scratch.here.runs_before };
-    let above_words = row.saturating_sub(1) * words..;
-    let above = Row { starts: &strip.starts[above_words][..words], before: &scratch.above.runs_before };
-    let links =
-        Links { contacts: &scratch.contacts, orphans: &scratch.orphans, ends: &scratch.ends, left: &scratch.here.left };
-    let new_label = forest.len() as u32;
-    let new_labels = if I::HAS_DENSE_LABELS && row > 0 && (end - first) * DENSE > strip.width {
-        let first_above = strip.row_first_run[row - 1] as usize;
-        let (labels_above, labels_here) = labels.split_at_mut(first);
-        I::dense_labels(
-            &links,
-            above.starts,
-            &labels_above[first_above - 1..],
-            &mut scratch.inherited,
-            labels_here,
-            new_label,
-        )
-    } else {
-        sparse_labels(&links, &here, &above, labels, new_label, found.orphans)
-    };
-    forest.extend(new_label..new_label + new_labels);
-    sizes.resize(forest.len(), 0);
-    for w in 0..if found.later_contacts { words } else { 0 } {
-        let mut later = scratch.later_contacts[w];
-        while let Some(up_to) = next_bit(&mut later) {
-            forest::unite(forest, labels[here.run_at(w, up_to)], labels[above.run_at(w, up_to)]);
-        }
-    }
-    let columns = scratch.first_column.iter().zip(&scratch.last_column);
-    for (&label, (first, last)) in labels[first..end].iter().zip(columns) {
-        sizes[label as usize] += u32::from(last - first) + 1;
-    }
-}
-
-/// How the runs of a row hang together with those above.
-pub struct Links<'a> {
-    /// First contacts.
-    pub contacts: &'a [u64],
-    /// Last pixels of runs without a contact.
-    pub orphans: &'a [u64],
-    /// Last pixels of runs.
-    pub ends: &'a [u64],
-    /// Pixels linked to their left neighbours.
-    pub left: &'a [u64],
-}
-
-/// Where the runs of a row start.
-struct Row<'a> {
-    starts: &'a [u64],
-    /// Runs before each word.
-    before: &'a [u32],
-}
-
-impl Row<'_> {
-    /// The run at the highest of the bits `up_to` of word w: as many as there are run starts up to it.
-    #[inline(always)]
-    fn run_at(&self, w: usize, up_to: u64) -> usize {
-        (self.before[w] + (self.starts[w] & up_to).count_ones() - 1) as usize
-    }
-}
-
-/// Labels runs one by one; how many labels are new.
-#[inline(always)]
-fn sparse_labels(
-    links: &Links<'_>,
-    here: &Row<'_>,
-    above: &Row<'_>,
-    labels: &mut [u32],
-    new_label: u32,
-    any_orphans: bool,
-) -> u32 {
-    for w in 0..here.starts.len() {
-        let mut contacts = links.contacts[w];
-        while let Some(up_to) = next_bit(&mut contacts) {
-            labels[here.run_at(w, up_to)] = labels[above.run_at(w, up_to)];
-        }
-    }
-    let mut new_labels = 0;
-    for w in 0..if any_orphans { here.starts.len() } else { 0 } {
-        let mut orphans = links.orphans[w];
-        while let Some(up_to) = next_bit(&mut orphans) {
-            // An orphan is marked at its end. A run that reaches into the word ends in it first.
-            let ended_before = here.before[w] - (links.left[w] & 1) as u32;
-            let run = ended_before + (links.ends[w] & up_to).count_ones() - 1;
-            labels[run as usize] = new_label + new_labels;
-            new_labels += 1;
-        }
-    }
-    new_labels
-}
-
-/// Takes the lowest set bit away; the bits up to and including it.
-#[inline(always)]
-fn next_bit(bits: &mut u64) -> Option<u64> {
-    let up_to = *bits ^ bits.wrapping_sub(1);
-    let any = *bits != 0;
-    *bits &= bits.wrapping_sub(1);
-    any.then_some(up_to)
-}
-
-/// Finds the pixels at which two runs first touch: linked upwards, and without a left neighbour in the
-/// same two runs that is too. Of these, the first of each run go to `contacts`, the others to `later`;
-/// runs without any are marked in `orphans`, at their ends.
-///
-/// A run's pixels behind its first are a block of ones in `left`. Adding a one to a block carries
-/// through to its end, so the ones that the sum clears lie behind the contact that was added.
-#[inline(always)]
-fn find_contacts(here: &RowLinks, left_above: &[u64], ends: &[u64], out: [&mut [u64]; 3]) -> Found {
-    let words = ends.len();
-    let [contacts, later, orphans] = out.map(|masks| &mut masks[..words]);
-    let (up, left, left_above) = (&here.up[..words], &here.left[..words], &left_above[..words]);
-    let (mut up_left, mut contact_left, mut carry) = (0, 0, false);
-    let (mut any_later, mut any_orphans) = (0, 0);
-    for w in 0..words {
-        let contact = up[w] & !((up[w] << 1 | up_left) & left[w] & left_above[w]);
-        let behind = (contact << 1 | contact_left) & left[w];
-        let (sum, carry_1) = left[w].overflowing_add(behind);
-        let (sum, carry_2) = sum.overflowing_add(carry.into());
-        let covered = (left[w] & !sum) | behind;
-        (up_left, contact_left, carry) = (up[w] >> 63, contact >> 63, carry_1 | carry_2);
-        (contacts[w], later[w]) = (contact & !covered, contact & covered);
-        orphans[w] = ends[w] & !(contact | covered);
-        any_orphans |= orphans[w];
-        any_later |= later[w];
-    }
-    Found { orphans: any_orphans != 0, later_contacts: any_later != 0 }
-}
-
-/// What a row has of what many rows have not.
-struct Found {
-    orphans: bool,
-    later_contacts: bool,
-}
-
 /// Unites the labels on both sides of the border between two strips, in the forest of all strips.
 #[inline(always)]
 pub(super) fn stitch<I: Isa, T: Pixel>(
@@ -415,7 +230,7 @@ pub(super) fn stitch<I: Isa, T: Pixel>(
     let (words, v, last_row) = (lower.words, lower.rows.start, upper.rows.len() - 1);
     let (starts, starts_above) = (&lower.starts[..words], &upper.starts[last_row * words..]);
     let (valid, valid_above) = (&lower.valid[..words], &upper.valid[last_row * words..]);
-    let Scratch { above, here, ends: unused, contacts, later_contacts, orphans, .. } = &mut lower.scratch;
+    let Scratch { above, here, ends: unused, .. } = &mut lower.scratch;
     let masks = RowMasks { valid: unused, close_left: &mut here.left[..words], close_up: &mut here.up };
     T::masks::<I>(map.row(v), map.row(v - 1), rule, masks);
     for w in 0..words {
@@ -423,10 +238,10 @@ pub(super) fn stitch<I: Isa, T: Pixel>(
         here.left[w] = valid[w] & !starts[w];
         above.left[w] = valid_above[w] & !starts_above[w];
     }
-    find_contacts(here, &above.left, unused, [contacts, later_contacts, orphans]);
+    lower.scratch.find_contacts();
     let (mut runs, mut runs_above) = (0, upper.row_first_run[last_row] as usize - 1);
     for w in 0..words {
-        let mut contacts = contacts[w] | later_contacts[w];
+        let mut contacts = lower.scratch.contacts[w] | lower.scratch.later_contacts[w];
         while let Some(up_to) = next_bit(&mut contacts) {
             let run = |before: usize, starts: u64| before + (starts & up_to).count_ones() as usize;
             let here = lower.labels[run(runs, starts[w])] + lower.first_label as u32;

@@ -120,14 +120,13 @@ impl Isa for Avx512 {
     #[inline(always)]
     fn dense_labels(
         links: &Links<'_>,
-        starts_above: &[u64],
         above: &[u32],
         inherited: &mut [u32],
         labels: &mut [u32],
         new_label: u32,
     ) -> u32 {
         // SAFETY: as above.
-        unsafe { dense_labels(links, starts_above, above, inherited, labels, new_label) }
+        unsafe { dense_labels(links, above, inherited, labels, new_label) }
     }
     #[inline(always)]
     fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
@@ -210,14 +209,8 @@ fn positions(mask: &[u64], count: usize, list: &mut Vec<u16>) {
 /// expands the list to the runs that have one, and new labels to the others.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vpopcntdq,bmi1,bmi2,popcnt")]
-fn dense_labels(
-    links: &Links<'_>,
-    starts_above: &[u64],
-    above: &[u32],
-    inherited: &mut [u32],
-    labels: &mut [u32],
-    new_label: u32,
-) -> u32 {
+fn dense_labels(links: &Links<'_>, above: &[u32], inherited: &mut [u32], labels: &mut [u32], new_label: u32) -> u32 {
+    let starts_above = links.starts_above;
     let ones = |words: &[u64]| words.iter().map(|word| word.count_ones() as usize).sum::<usize>();
     assert!(above.len() > ones(starts_above) && inherited.len() >= ones(links.contacts) + SLACK);
     assert!(labels.len() >= ones(links.ends) + SLACK && links.ends.len() == starts_above.len());

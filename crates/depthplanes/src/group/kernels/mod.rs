@@ -13,7 +13,8 @@ mod portable;
 mod words;
 
 use super::LinkRule;
-use super::strip::{Links, RowMasks, Strip};
+use super::labels::Links;
+use super::strip::{RowMasks, Strip};
 use crate::map::{DepthView, Pixel};
 use std::fmt;
 #[cfg(target_arch = "x86_64")]
@@ -43,7 +44,6 @@ pub trait Isa {
     /// spare. `inherited` is memory for a label per pixel.
     fn dense_labels(
         _links: &Links<'_>,
-        _starts_above: &[u64],
         _above: &[u32],
         _inherited: &mut [u32],
         _labels: &mut [u32],
