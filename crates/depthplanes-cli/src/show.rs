@@ -82,7 +82,7 @@ fn map_heading() -> Vec<String> {
 fn metric_row(plane: &Plane) -> Vec<String> {
     let middle = plane.metric.map_or(unknown(5), |metric| {
         let mut cells = vec![format!("{:.3} m", metric.plane.distance)];
-        cells.extend(metric.plane.normal.map(|x| format!("{x:.3}")));
+        cells.extend(metric.plane.normal.map(direction));
         cells.push(format!("{:.1} mm", 1e3 * metric.rms_m));
         cells
     });
@@ -162,6 +162,12 @@ fn units_advice(report: &Report<'_>) -> Vec<String> {
 
 fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
+}
+
+/// A component of a unit vector, never `-0.000`.
+fn direction(x: f64) -> String {
+    let text = format!("{x:.3}");
+    if text == "-0.000" { "0.000".into() } else { text }
 }
 
 /// A length with the unit that suits it.
