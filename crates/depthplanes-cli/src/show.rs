@@ -136,14 +136,18 @@ pub(crate) fn advice(report: &Report<'_>) -> Vec<String> {
 /// Differences between neighbours of a surface, metres, that depth cameras show at a few metres.
 const USUAL_STEP_M: f64 = 0.005;
 
+/// More planes than a scene has: surfaces have fallen into bands.
+const MANY_PLANES: usize = 200;
+
 /// A parameter in map units means another length in each encoding; says so where that matters.
 fn units_advice(report: &Report<'_>) -> Vec<String> {
     let Measure::Depth { metres } = report.frame.sensor.measure else { return Vec::new() };
-    let few = report.detection.labelled_share() < 0.25;
+    let detection = report.detection;
+    let doubtful = detection.labelled_share() < 0.25 || detection.planes.len() > MANY_PLANES;
     let mut notes = Vec::new();
     for (param, value) in report.method.params.iter().zip(report.parameters) {
         let given_m = value * metres;
-        let odd = given_m > 20.0 * USUAL_STEP_M || (few && given_m < USUAL_STEP_M / 2.0);
+        let odd = given_m > 20.0 * USUAL_STEP_M || (doubtful && given_m < USUAL_STEP_M / 2.0);
         // 0 switches a parameter off, whatever the unit.
         if param.unit == "map units" && *value > 0.0 && odd {
             notes.push(format!(
