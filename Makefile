@@ -69,7 +69,7 @@ bench: $(VENV) ## Measure against cc3d and OpenCV; writes benchmarks/record/MACH
 	$(PY) benchmarks/run.py --rounds $(ROUNDS) --record "benchmarks/record/$(MACHINE)/$$(date +%F).csv"
 
 tables: $(VENV) ## Write docs/paper-tables.md: the paper's tables on the same maps
-	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes --examples
+	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes-cli
 	$(PY) benchmarks/paper_tables.py
 
 golden: ## Write golden files, the outputs shown in the docs and their pictures anew; look at the difference
