@@ -51,7 +51,7 @@ struct Distances {
     squares: f64,
     /// Sum of the points, metres.
     point: [f64; 3],
-    /// Whether all pixels lie before infinity.
+    /// Whether some pixel lies at or behind infinity, which leaves the plane without metric values.
     behind_infinity: bool,
 }
 

@@ -2,9 +2,10 @@
 //!
 //! In: a map and the side of a window, odd, 3..=31. Out: the map with gaps filled: a missing pixel
 //! becomes the mean of the valid pixels in the window around it, clipped at the map's edges, unless
-//! more than half of the (clipped) window is missing. Only the original map is read, so the order of
-//! pixels does not matter. The cost of a pixel does not depend on the window: sums of columns move
-//! down row by row, and their prefix sums give any window by one subtraction.
+//! more than half of the (clipped) window is missing. Means of whole numbers round half up. Only the
+//! original map is read, so the order of pixels does not matter. The cost of a pixel does not depend
+//! on the window: sums of columns move down row by row, and their prefix sums give any window by one
+//! subtraction.
 
 use crate::error::{Error, Result};
 use crate::map::{DepthView, Pixel};
@@ -143,8 +144,12 @@ fn fill<T: Pixel>(map: &DepthView<'_, T>, reach: usize, columns: &mut Columns, o
                 true => columns.sum_before[end] - columns.sum_before[first],
                 false => sum_directly(map, rows.clone(), first..end),
             };
-            out[v * width + u] = T::from_f64(sum / f64::from(valid));
-            filled += 1;
+            let mean = T::from_f64(sum / f64::from(valid));
+            // Our choice: a mean that itself means "missing" (the sentinel) fills nothing.
+            if validity.holds(mean) {
+                out[v * width + u] = mean;
+                filled += 1;
+            }
         }
     }
     filled

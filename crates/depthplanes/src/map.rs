@@ -21,6 +21,8 @@ mod sealed {
         fn distance(self, other: Self) -> Self;
         /// The largest value of this type that is not above theta; for `f32`, the nearest.
         fn floor_from(theta: f64) -> Self;
+        /// What kernels compare with for the range's high end: `high - low` for integers, else `high`.
+        fn high_or_span(low: Self, high: Self) -> Self;
         /// The kernel's functions for this type.
         fn compiled(kernel: &Kernel) -> Compiled<Self>;
         /// The enhancer's memory for this type.
@@ -30,7 +32,7 @@ mod sealed {
     }
 
     macro_rules! sealed {
-        ($t:ident, $masks:ident, $distance:expr, $floor_from:expr) => {
+        ($t:ident, $masks:ident, $distance:expr, $floor_from:expr, $high_or_span:expr) => {
             impl Sealed for $t {
                 #[inline(always)]
                 fn distance(self, other: Self) -> Self {
@@ -38,6 +40,9 @@ mod sealed {
                 }
                 fn floor_from(theta: f64) -> Self {
                     $floor_from(theta)
+                }
+                fn high_or_span(low: Self, high: Self) -> Self {
+                    $high_or_span(low, high)
                 }
                 fn compiled(kernel: &Kernel) -> Compiled<Self> {
                     kernel.$t
@@ -53,9 +58,9 @@ mod sealed {
         };
     }
     // `as` from a float clamps to the type's range and drops the fraction.
-    sealed!(u8, masks_u8, u8::abs_diff, |theta: f64| theta as u8);
-    sealed!(u16, masks_u16, u16::abs_diff, |theta: f64| theta as u16);
-    sealed!(f32, masks_f32, |a: f32, b: f32| (a - b).abs(), |theta: f64| theta as f32);
+    sealed!(u8, masks_u8, u8::abs_diff, |theta: f64| theta as u8, |low, high: u8| high - low);
+    sealed!(u16, masks_u16, u16::abs_diff, |theta: f64| theta as u16, |low, high: u16| high - low);
+    sealed!(f32, masks_f32, |a: f32, b: f32| (a - b).abs(), |theta: f64| theta as f32, |_, high| high);
 }
 
 /// A pixel type: `u8`, `u16` or `f32`.
@@ -194,13 +199,15 @@ impl<'a, T: Pixel> DepthView<'a, T> {
         self
     }
 
-    /// Only values within `low..=high` (map units) are valid.
+    /// Only values within `low..=high` (map units) are valid. An infinite end means no limit on that
+    /// side; the infinities themselves stay missing.
     ///
     /// # Errors
     /// [`Error::ValidRange`] unless `low < high`.
     pub fn valid_range(mut self, low: T, high: T) -> Result<Self> {
         if low < high {
-            (self.validity.low, self.validity.high) = (low, high);
+            self.validity.low = if low < T::LOWEST { T::LOWEST } else { low };
+            self.validity.high = if high > T::HIGHEST { T::HIGHEST } else { high };
             Ok(self)
         } else {
             Err(Error::ValidRange { low: low.into(), high: high.into() })

@@ -26,7 +26,7 @@ pub struct Kept {
 pub struct Selection {
     kept: Vec<Kept>,
     label_of_group: Vec<u16>,
-    label_of_component: Vec<u16>,
+    label_of_provisional: Vec<u16>,
 }
 
 impl Selection {
@@ -38,9 +38,10 @@ impl Selection {
         let most_groups = groups.width() * groups.height();
         reserve_to(&mut self.kept, MAX_PLANES.min(most_groups));
         reserve_to(&mut self.label_of_group, most_groups);
-        reserve_to(&mut self.label_of_component, most_groups);
+        reserve_to(&mut self.label_of_provisional, most_groups);
         let found = groups.sizes().iter().filter(|&&size| size > min).count();
         if found > MAX_PLANES {
+            self.label_groups(groups);
             return Err(Error::TooManyPlanes { found });
         }
         // Most groups of a noisy map are tiny: a block of them is passed over by one test.
@@ -79,7 +80,7 @@ impl Selection {
     /// Writes the label image, row by row, `width * height`.
     pub fn paint(&mut self, groups: &Groups, labels: &mut Vec<u16>) {
         labels.resize(groups.width() * groups.height(), 0);
-        groups.paint(&self.label_of_group, &mut self.label_of_component, labels);
+        groups.paint(&self.label_of_group, &mut self.label_of_provisional, labels);
     }
 
     /// The runs of the kept groups in raster order, each with its plane's label, 1 and up.

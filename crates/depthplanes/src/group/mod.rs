@@ -7,8 +7,8 @@
 //! answer is the same for every kernel and any number of threads, since components do not depend on
 //! the order of unions and groups are numbered by their first pixel.
 //!
-//! How: `strip::scan` finds the components of a strip of rows, `strip::stitch` joins those of
-//! neighbouring strips, `forest::flatten` numbers the groups and adds up their sizes.
+//! How: `strip::scan` labels a strip of rows, `strip::stitch` unites the labels of neighbouring
+//! strips, `forest::flatten` numbers the groups and adds up their sizes.
 
 mod forest;
 mod kernels;
@@ -31,6 +31,9 @@ pub struct LinkRule<T> {
     /// Largest difference. Integer maps: theta rounded down, which links the same pixels; `f32`
     /// maps: the nearest `f32`.
     pub(crate) theta: T,
+    /// The valid range's length for integers, where one comparison of `value - low` serves for both
+    /// ends; its high end for `f32`.
+    pub(crate) high_or_span: T,
 }
 
 impl<T: Pixel> LinkRule<T> {
@@ -43,7 +46,11 @@ impl<T: Pixel> LinkRule<T> {
             validity.low = T::from_f64(1.0);
         }
         if theta >= 0.0 {
-            Ok(LinkRule { validity, theta: T::floor_from(theta) })
+            Ok(LinkRule {
+                validity,
+                theta: T::floor_from(theta),
+                high_or_span: T::high_or_span(validity.low, validity.high),
+            })
         } else {
             Err(Error::Parameter { name: "theta", given: theta, accepted: "a number from 0 up, in map units".into() })
         }
@@ -92,6 +99,12 @@ impl Grouper {
         Grouper { groups: Groups::new(kernel) }
     }
 
+    /// Whether groups of a single pixel may be left out, which saves time on noisy maps. Some are then
+    /// neither counted nor listed; they remain valid pixels.
+    pub fn leave_out_singles(&mut self, yes: bool) {
+        self.groups.leaves_out_singles = yes;
+    }
+
     /// Groups one map on `threads` threads (0 counts as 1; one without the feature `parallel`).
     ///
     /// ```
@@ -121,29 +134,28 @@ impl Grouper {
     }
 }
 
-/// Pixels of a strip, about. Its forest, 4 bytes for each of its runs, is to stay in a core's cache,
-/// and frames up to 640 x 480 are to be spared the joining.
+/// Pixels of a strip, about: enough for the joining not to matter, few enough for threads to share.
 const STRIP_PIXELS: usize = 1 << 19;
 
 /// The groups of a map: its runs, and for each the group it belongs to.
 #[derive(Debug)]
 pub struct Groups {
     kernel: &'static Kernel,
+    leaves_out_singles: bool,
     threads: usize,
     width: usize,
     height: usize,
     strips: Vec<Strip>,
-    /// For each component of a strip, strip after strip, its parent while strips are joined, then its
-    /// group.
-    group_of_component: Vec<u32>,
+    /// For each provisional label, strip after strip, its parent while strips are joined, then its group.
+    group_of_label: Vec<u32>,
     /// The pixels of each group.
     sizes: Vec<u32>,
 }
 
 impl Groups {
     fn new(kernel: &'static Kernel) -> Self {
-        let (strips, group_of_component, sizes) = Default::default();
-        Groups { kernel, threads: 1, width: 0, height: 0, strips, group_of_component, sizes }
+        let (strips, group_of_label, sizes) = Default::default();
+        Groups { kernel, leaves_out_singles: false, threads: 1, width: 0, height: 0, strips, group_of_label, sizes }
     }
 
     fn prepare<T: Pixel>(&mut self, map: &DepthView<'_, T>, threads: usize) {
@@ -151,13 +163,14 @@ impl Groups {
         let height = (STRIP_PIXELS / self.width).clamp(1, self.height);
         self.strips.resize_with(self.height.div_ceil(height), Strip::default);
         for (strip, first) in self.strips.iter_mut().zip((0..).step_by(height)) {
+            strip.leaves_out_singles = self.leaves_out_singles;
             strip.prepare(self.width, first..(first + height).min(self.height));
         }
-        reserve_to(&mut self.group_of_component, map.area());
+        reserve_to(&mut self.group_of_label, map.area());
         reserve_to(&mut self.sizes, map.area());
     }
 
-    /// The components of each strip.
+    /// The provisional labels of each strip.
     fn scan_strips<T: Pixel>(&mut self, map: &DepthView<'_, T>, rule: &LinkRule<T>) {
         let kernel = self.kernel;
         #[cfg(feature = "parallel")]
@@ -169,25 +182,25 @@ impl Groups {
         self.strips.iter_mut().for_each(|strip| kernel.scan(map, rule, strip));
     }
 
-    /// Groups from the strips' components, united along the borders.
+    /// Groups from the strips' labels, united along the borders.
     fn join_strips<T: Pixel>(&mut self, map: &DepthView<'_, T>, rule: &LinkRule<T>) {
-        let forest = &mut self.group_of_component;
-        if let [only] = &self.strips[..] {
-            forest.extend(0..only.sizes.len() as u32);
-            return self.sizes.extend_from_slice(&only.sizes);
+        let (forest, sizes) = (&mut self.group_of_label, &mut self.sizes);
+        if let [only] = &mut self.strips[..] {
+            std::mem::swap(forest, &mut only.forest);
+            std::mem::swap(sizes, &mut only.sizes);
+        } else {
+            for strip in &mut self.strips {
+                strip.first_label = forest.len();
+                let offset = forest.len() as u32;
+                forest.extend(strip.forest.iter().map(|parent| parent + offset));
+                sizes.extend_from_slice(&strip.sizes);
+            }
         }
-        let mut components = 0;
-        for strip in &mut self.strips {
-            strip.first_component = components;
-            components += strip.sizes.len();
-        }
-        forest.extend(0..components as u32);
         for k in 1..self.strips.len() {
             let (above, below) = self.strips.split_at_mut(k);
             self.kernel.stitch(map, rule, &above[k - 1], &mut below[0], forest);
         }
-        let sizes = self.strips.iter().flat_map(|strip| strip.sizes.iter().copied());
-        forest::flatten(forest, sizes, &mut self.sizes);
+        forest::flatten(forest, sizes);
     }
 
     /// Columns of the map.
@@ -200,28 +213,33 @@ impl Groups {
         self.height
     }
 
-    /// Valid pixels of the map, which is the sum of all groups' sizes.
+    /// Valid pixels of the map, which is the sum of all groups' sizes and the singles left out.
     pub fn valid_pixels(&self) -> usize {
         self.strips.iter().map(|strip| strip.valid_pixels).sum()
     }
 
-    /// How many groups there are.
+    /// How many groups of a single pixel were left out ([`Grouper::leave_out_singles`]).
+    pub fn singles_left_out(&self) -> usize {
+        self.strips.iter().map(|strip| strip.singles_left_out).sum()
+    }
+
+    /// How many groups there are, without the singles left out.
     pub fn count(&self) -> usize {
         self.sizes.len()
     }
 
     /// How many runs there are.
     pub fn run_count(&self) -> usize {
-        self.strips.iter().map(|strip| strip.forest.len()).sum()
+        self.strips.iter().map(Strip::run_count).sum()
     }
 
     /// All runs in raster order.
     pub fn runs(&self) -> impl Iterator<Item = Run> + '_ {
         self.strips.iter().flat_map(move |strip| {
-            let groups = &self.group_of_component[strip.first_component..];
+            let groups = &self.group_of_label[strip.first_label..];
             let columns = (0..strip.rows.len()).flat_map(move |row| strip.columns(row).map(move |run| (row, run)));
-            columns.zip(&strip.forest).map(move |((row, (u_first, u_last)), &component)| {
-                let group = groups[component as usize];
+            columns.zip(strip.labels()).map(move |((row, (u_first, u_last)), &label)| {
+                let group = groups[label as usize];
                 Run { v: (strip.rows.start + row) as u32, u_first, u_last, group }
             })
         })
@@ -233,19 +251,13 @@ impl Groups {
     }
 
     /// Writes an image, `width * height`: each pixel the label of its group, each missing pixel 0.
-    /// `label_of_component` is memory to work in.
-    pub(crate) fn paint(&self, label_of_group: &[u16], label_of_component: &mut Vec<u16>, image: &mut [u16]) {
+    /// `label_of_provisional` is memory to work in.
+    pub(crate) fn paint(&self, label_of_group: &[u16], label_of_provisional: &mut Vec<u16>, image: &mut [u16]) {
         assert_eq!(image.len(), self.width * self.height);
-        let label_of_component = match &self.strips[..] {
-            [_] => label_of_group, // its components are the groups
-            _ => {
-                label_of_component.clear();
-                label_of_component.extend(self.group_of_component.iter().map(|&group| label_of_group[group as usize]));
-                &label_of_component[..]
-            }
-        };
+        label_of_provisional.clear();
+        label_of_provisional.extend(self.group_of_label.iter().map(|&group| label_of_group[group as usize]));
         let paint = |(strip, part): (&Strip, &mut [u16])| {
-            self.kernel.paint(strip, &label_of_component[strip.first_component..], part);
+            self.kernel.paint(strip, &label_of_provisional[strip.first_label..], part);
         };
         let part = self.strips[0].rows.len() * self.width;
         #[cfg(feature = "parallel")]

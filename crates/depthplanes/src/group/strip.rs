@@ -1,10 +1,10 @@
-//! A strip of rows: its bit masks, its runs, and the components that they form within the strip.
+//! A strip of rows: its bit masks, its runs, and their provisional labels.
 //!
-//! In: rows of the map. Out: for each row the masks of valid pixels and run starts, for each run its
-//! component, for each component its size. Columns of a row are bits, column u in bit u % 64 of word
+//! In: rows of the map. Out: for each row the masks of valid pixels and run starts, for each run a
+//! provisional label, and the forest of those labels. Columns of a row are bits, column u in bit u % 64 of word
 //! u / 64, so "left" is one bit lower.
 
-use super::kernels::Isa;
+use super::kernels::{Isa, SLACK};
 use super::{LinkRule, forest, reserve_to};
 use crate::map::{DepthView, Pixel};
 use std::ops::Range;
@@ -19,9 +19,15 @@ pub struct RowMasks<'a> {
     pub close_up: &'a mut [u64],
 }
 
+/// A row is dense if it has more runs than one in this many pixels; measured on two processors' worth
+/// of frames from 5,000 to 250,000 runs, the break-even is flat around it.
+const DENSE: usize = 6;
+
 /// What a strip knows after [`scan`].
 ///
-/// Strips are low enough for their forest to stay in a core's cache until it is flattened.
+/// As in any two-pass labelling, a run takes the provisional label of the first run that it touches
+/// above, or a new one if it touches none; labels that meet later are united in a forest. Only new
+/// labels cost an element of the forest, so it stays small even where noise makes many runs.
 #[derive(Debug, Default)]
 pub(super) struct Strip {
     /// Its rows in the map.
@@ -34,33 +40,46 @@ pub(super) struct Strip {
     pub(super) valid: Vec<u64>,
     /// First pixels of runs, `words` a row.
     pub(super) starts: Vec<u64>,
-    /// For each row the first of its runs, counted within the strip; one more at the end.
+    /// For each row the first of its runs, counted within the strip from 1; one more at the end.
     pub(super) row_first_run: Vec<u32>,
-    /// For each run, while scanning its parent, then its component, both counted within the strip.
+    /// Provisional label of each run, counted from 1, and [`SLACK`] elements more to read and write.
+    labels: Vec<u32>,
+    /// Forest over the provisional labels.
     pub(super) forest: Vec<u32>,
-    /// Pixels of each run.
-    pub(super) lengths: Vec<u16>,
-    /// Pixels of each component.
+    /// Pixels of each provisional label.
     pub(super) sizes: Vec<u32>,
-    /// Components of the map before this strip's first.
-    pub(super) first_component: usize,
+    /// Provisional labels of the strips above.
+    pub(super) first_label: usize,
     /// Valid pixels of the strip.
     pub(super) valid_pixels: usize,
+    /// Whether pixels without any link may be left out of the runs.
+    pub(super) leaves_out_singles: bool,
+    /// How many were.
+    pub(super) singles_left_out: usize,
     scratch: Scratch,
 }
 
-/// What only one row and the next need.
+/// What only a row and its neighbours need.
 #[derive(Debug, Default)]
 struct Scratch {
-    left: Vec<u64>,
-    left_of_row_above: Vec<u64>,
-    above: Vec<u64>,
+    above: RowLinks,
+    here: RowLinks,
+    below: RowLinks,
     ends: Vec<u64>,
+    contacts: Vec<u64>,
     later_contacts: Vec<u64>,
-    runs_before: Vec<u32>,
-    runs_before_in_row_above: Vec<u32>,
+    orphans: Vec<u64>,
     first_column: Vec<u16>,
     last_column: Vec<u16>,
+    inherited: Vec<u32>,
+}
+
+/// The links of one row, one bit a pixel, and the runs before each word.
+#[derive(Debug, Default)]
+struct RowLinks {
+    left: Vec<u64>,
+    up: Vec<u64>,
+    runs_before: Vec<u32>,
 }
 
 impl Strip {
@@ -73,22 +92,34 @@ impl Strip {
             masks.resize(height * words, 0);
         }
         reserve_to(&mut self.row_first_run, height + 1);
-        reserve_to(&mut self.forest, height * width);
-        reserve_to(&mut self.lengths, height * width);
-        reserve_to(&mut self.sizes, height * width);
-        let scratch = &mut self.scratch;
-        let Scratch { left, left_of_row_above, above, ends, later_contacts, .. } = scratch;
-        for masks in [left, left_of_row_above, above, ends, later_contacts] {
-            masks.clear();
-            masks.resize(words + 1, 0);
+        reserve_to(&mut self.labels, 1 + height * width + SLACK);
+        for per_label in [&mut self.forest, &mut self.sizes] {
+            reserve_to(per_label, height * width);
         }
-        for counts in [&mut scratch.runs_before, &mut scratch.runs_before_in_row_above] {
-            counts.clear();
-            counts.resize(words, 0);
+        let scratch = &mut self.scratch;
+        for row in [&mut scratch.above, &mut scratch.here, &mut scratch.below] {
+            row.left.resize(words + 1, 0); // the last word stays 0
+            row.up.resize(words, 0);
+            row.runs_before.resize(words, 0);
+        }
+        let Scratch { ends, contacts, later_contacts, orphans, .. } = scratch;
+        for masks in [ends, contacts, later_contacts, orphans] {
+            masks.resize(words, 0);
         }
         for columns in [&mut scratch.first_column, &mut scratch.last_column] {
-            reserve_to(columns, width + super::kernels::SLACK);
+            reserve_to(columns, width + SLACK);
         }
+        scratch.inherited.resize(width + SLACK, 0);
+    }
+
+    /// How many runs there are.
+    pub(super) fn run_count(&self) -> usize {
+        self.labels.len() - 1 - SLACK
+    }
+
+    /// Provisional label of each run in raster order.
+    pub(super) fn labels(&self) -> &[u32] {
+        &self.labels[1..1 + self.run_count()]
     }
 
     /// First and last column of each run of a row.
@@ -113,37 +144,47 @@ fn bits(words: usize, word: impl Fn(usize) -> u64) -> impl Iterator<Item = u32> 
     })
 }
 
-/// Components of a strip: row by row its masks, its runs and their contacts with the row above, then
-/// the forest flattened.
+/// Labels a strip, row by row: its links, its runs, their contacts, and a label for each. Links are
+/// known one row ahead, to tell pixels without any.
 #[inline(always)]
 pub(super) fn scan<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>, strip: &mut Strip) {
-    strip.valid_pixels = 0;
+    (strip.valid_pixels, strip.singles_left_out) = (0, 0);
+    strip.labels.resize(1 + SLACK, 0);
+    row_links::<I, T>(map, rule, strip, 0);
     for row in 0..strip.rows.len() {
-        let v = strip.rows.start + row;
-        row_masks::<I, T>(map, v, rule, strip);
-        row_runs::<I>(strip, row);
-        if row > 0 {
-            join_row_above(strip, row);
+        let Scratch { above, here, below, .. } = &mut strip.scratch;
+        std::mem::swap(above, here);
+        std::mem::swap(here, below);
+        if row + 1 < strip.rows.len() {
+            row_links::<I, T>(map, rule, strip, row + 1);
         }
-        let scratch = &mut strip.scratch;
-        std::mem::swap(&mut scratch.left, &mut scratch.left_of_row_above);
-        std::mem::swap(&mut scratch.runs_before, &mut scratch.runs_before_in_row_above);
+        row_runs::<I>(strip, row);
+        let found = row_contacts(strip);
+        row_labels::<I>(strip, row, &found);
     }
-    strip.row_first_run.push(strip.forest.len() as u32);
-    forest::flatten(&mut strip.forest, strip.lengths.iter().map(|&length| length.into()), &mut strip.sizes);
+    strip.row_first_run.push(1 + strip.run_count() as u32);
 }
 
-/// Masks of row v of the map, in `valid` and the scratch's `left` and `above`. The links lack the
-/// validity of the other side yet. The map's first row stands in for the row above it.
+/// Links of a row to the left and up, left in the scratch as those of the row below. The strip's first
+/// row has none upwards.
 #[inline(always)]
-fn row_masks<I: Isa, T: Pixel>(map: &DepthView<'_, T>, v: usize, rule: &LinkRule<T>, strip: &mut Strip) {
-    let words = strip.words;
-    let masks = RowMasks {
-        valid: &mut strip.valid[(v - strip.rows.start) * words..][..words],
-        close_left: &mut strip.scratch.left[..words],
-        close_up: &mut strip.scratch.above[..words],
-    };
+fn row_links<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>, strip: &mut Strip, row: usize) {
+    let (words, v) = (strip.words, strip.rows.start + row);
+    let (above, here) = strip.valid[row.saturating_sub(1) * words..(row + 1) * words].split_at_mut(row.min(1) * words);
+    let RowLinks { left, up, .. } = &mut strip.scratch.below;
+    let left = &mut left[..words];
+    let masks = RowMasks { valid: here, close_left: left, close_up: up };
     T::masks::<I>(map.row(v), map.row(v.saturating_sub(1)), rule, masks);
+    // Both sides of a link are valid. Above the strip there is nothing.
+    let (mut pixels, mut valid_left) = (0, 0);
+    for w in 0..words {
+        let above = if row == 0 { 0 } else { above[w] };
+        left[w] &= here[w] & (here[w] << 1 | valid_left);
+        up[w] &= here[w] & above;
+        valid_left = here[w] >> 63;
+        pixels += here[w].count_ones();
+    }
+    strip.valid_pixels += pixels as usize;
 }
 
 /// Lists the runs of a row: a run starts at a valid pixel that is not linked to its left, and ends
@@ -151,160 +192,238 @@ fn row_masks<I: Isa, T: Pixel>(map: &DepthView<'_, T>, v: usize, rule: &LinkRule
 #[inline(always)]
 fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
     let words = strip.words;
-    let valid = &strip.valid[row * words..][..words];
+    let first = 1 + strip.run_count() as u32;
+    let valid = &mut strip.valid[row * words..][..words];
     let starts = &mut strip.starts[row * words..][..words];
-    let scratch = &mut strip.scratch;
-    let left = &mut scratch.left[..words + 1];
-    let ends = &mut scratch.ends[..words];
-    let before = &mut scratch.runs_before[..words];
-    link_left(valid, left, starts);
-    end_runs(valid, left, ends);
-    let first = strip.forest.len() as u32;
-    let (mut runs, mut pixels) = (first, 0);
-    for w in 0..words {
-        before[w] = runs;
-        runs += starts[w].count_ones();
-        pixels += valid[w].count_ones();
+    let Scratch { here, below, ends, first_column, last_column, .. } = &mut strip.scratch;
+    let mut end = start_runs(valid, &here.left, starts, ends, &mut here.runs_before, first);
+    let is_inner = row > 0 && row + 1 < strip.rows.len(); // outer rows have links to other strips
+    if strip.leaves_out_singles && is_inner && (end - first) as usize * DENSE > strip.width {
+        let before = end;
+        leave_out_singles(valid, starts, ends, &here.up, &below.up);
+        end = start_runs(valid, &here.left, starts, ends, &mut here.runs_before, first);
+        strip.singles_left_out += (before - end) as usize;
     }
-    strip.valid_pixels += pixels as usize;
     strip.row_first_run.push(first);
-    strip.forest.extend(first..runs);
-    let columns = [(&*starts, &mut scratch.first_column), (&*ends, &mut scratch.last_column)];
-    for (mask, columns) in columns {
-        columns.clear();
-        I::positions(mask, (runs - first) as usize, columns);
+    strip.labels.resize(end as usize + SLACK, 0);
+    I::positions(starts, (end - first) as usize, first_column);
+    I::positions(ends, (end - first) as usize, last_column);
+}
+
+/// Where runs start and end, and how many start before each word, from `first` on; one more than the
+/// last run. `left` has a word 0 more.
+#[inline(always)]
+fn start_runs(
+    valid: &[u64],
+    left: &[u64],
+    starts: &mut [u64],
+    ends: &mut [u64],
+    before: &mut [u32],
+    first: u32,
+) -> u32 {
+    let words = valid.len();
+    let (left, starts, ends, before) =
+        (&left[..words + 1], &mut starts[..words], &mut ends[..words], &mut before[..words]);
+    let mut end = first;
+    for w in 0..words {
+        starts[w] = valid[w] & !left[w];
+        ends[w] = valid[w] & !(left[w] >> 1 | left[w + 1] << 63);
+        before[w] = end;
+        end += starts[w].count_ones();
+    }
+    end
+}
+
+/// Takes pixels that are a run of their own and linked neither up nor down for missing: each is a
+/// group that nobody asked for, and noise makes many.
+#[inline(always)]
+fn leave_out_singles(valid: &mut [u64], starts: &[u64], ends: &[u64], up: &[u64], up_below: &[u64]) {
+    for w in 0..valid.len() {
+        valid[w] &= !(starts[w] & ends[w]) | up[w] | up_below[w];
+    }
+}
+
+/// Finds where the runs of a row touch those above: the first contact of each run, its later ones,
+/// and the runs without any.
+#[inline(always)]
+fn row_contacts(strip: &mut Strip) -> Found {
+    let Scratch { above, here, ends, contacts, later_contacts, orphans, .. } = &mut strip.scratch;
+    find_contacts(here, &above.left, ends, [contacts, later_contacts, orphans])
+}
+
+/// Labels the runs of a row: from the first contact with a run above, which needs no search, or anew;
+/// then unites the labels of later contacts.
+#[inline(always)]
+fn row_labels<I: Isa>(strip: &mut Strip, row: usize, found: &Found) {
+    let words = strip.words;
+    let (first, end) = (strip.row_first_run[row] as usize, strip.labels.len() - SLACK);
+    let scratch = &mut strip.scratch;
+    let (labels, forest, sizes) = (&mut strip.labels[..], &mut strip.forest, &mut strip.sizes);
+    let here = Row { starts: &strip.starts[row * words..][..words], before: &scratch.here.runs_before };
+    let above_words = row.saturating_sub(1) * words..;
+    let above = Row { starts: &strip.starts[above_words][..words], before: &scratch.above.runs_before };
+    let links =
+        Links { contacts: &scratch.contacts, orphans: &scratch.orphans, ends: &scratch.ends, left: &scratch.here.left };
+    let new_label = forest.len() as u32;
+    let new_labels = if I::HAS_DENSE_LABELS && row > 0 && (end - first) * DENSE > strip.width {
+        let first_above = strip.row_first_run[row - 1] as usize;
+        let (labels_above, labels_here) = labels.split_at_mut(first);
+        I::dense_labels(
+            &links,
+            above.starts,
+            &labels_above[first_above - 1..],
+            &mut scratch.inherited,
+            labels_here,
+            new_label,
+        )
+    } else {
+        sparse_labels(&links, &here, &above, labels, new_label, found.orphans)
+    };
+    forest.extend(new_label..new_label + new_labels);
+    sizes.resize(forest.len(), 0);
+    for w in 0..if found.later_contacts { words } else { 0 } {
+        let mut later = scratch.later_contacts[w];
+        while let Some(up_to) = next_bit(&mut later) {
+            forest::unite(forest, labels[here.run_at(w, up_to)], labels[above.run_at(w, up_to)]);
+        }
     }
     let columns = scratch.first_column.iter().zip(&scratch.last_column);
-    strip.lengths.extend(columns.map(|(first, last)| last - first + 1));
-}
-
-/// Links pixels to their left neighbours where both are valid; pixels without that link start runs.
-#[inline(always)]
-fn link_left(valid: &[u64], left: &mut [u64], starts: &mut [u64]) {
-    let mut valid_left = 0;
-    for w in 0..valid.len() {
-        left[w] &= valid[w] & (valid[w] << 1 | valid_left);
-        starts[w] = valid[w] & !left[w];
-        valid_left = valid[w] >> 63;
+    for (&label, (first, last)) in labels[first..end].iter().zip(columns) {
+        sizes[label as usize] += u32::from(last - first) + 1;
     }
 }
 
-/// A run ends at a valid pixel whose right neighbour is not linked to it. `left` has one word more.
-#[inline(always)]
-fn end_runs(valid: &[u64], left: &[u64], ends: &mut [u64]) {
-    for w in 0..valid.len() {
-        ends[w] = valid[w] & !(left[w] >> 1 | left[w + 1] << 63);
+/// How the runs of a row hang together with those above.
+pub struct Links<'a> {
+    /// First contacts.
+    pub contacts: &'a [u64],
+    /// Last pixels of runs without a contact.
+    pub orphans: &'a [u64],
+    /// Last pixels of runs.
+    pub ends: &'a [u64],
+    /// Pixels linked to their left neighbours.
+    pub left: &'a [u64],
+}
+
+/// Where the runs of a row start.
+struct Row<'a> {
+    starts: &'a [u64],
+    /// Runs before each word.
+    before: &'a [u32],
+}
+
+impl Row<'_> {
+    /// The run at the highest of the bits `up_to` of word w: as many as there are run starts up to it.
+    #[inline(always)]
+    fn run_at(&self, w: usize, up_to: u64) -> usize {
+        (self.before[w] + (self.starts[w] & up_to).count_ones() - 1) as usize
     }
 }
 
-/// Unites the runs of a row with the runs above that they touch.
-///
-/// Only the first pixel of each touching pair of runs matters. A run's first such contact makes it
-/// a child without any search, for until then it is alone; the few later ones need a union.
+/// Labels runs one by one; how many labels are new.
 #[inline(always)]
-fn join_row_above(strip: &mut Strip, row: usize) {
-    let words = strip.words;
-    let here = row * words..(row + 1) * words;
-    let there = (row - 1) * words..row * words;
-    let (starts, starts_above) = (&strip.starts[here.clone()], &strip.starts[there.clone()]);
-    let (valid, valid_above) = (&strip.valid[here], &strip.valid[there]);
-    let scratch = &mut strip.scratch;
-    let (left, left_above) = (&scratch.left[..words], &scratch.left_of_row_above[..words]);
-    let (before, before_above) = (&scratch.runs_before[..words], &scratch.runs_before_in_row_above[..words]);
-    let (contacts, later) = (&mut scratch.above[..words], &mut scratch.later_contacts[..words]);
-    find_contacts(contacts, valid, valid_above, left, left_above);
-    let any_later = split_contacts(contacts, later, left);
-    let parent = &mut strip.forest[..];
-    for w in 0..words {
-        let mut first = contacts[w];
-        while first != 0 {
-            let (here, there) = runs_at(first, starts[w], before[w], starts_above[w], before_above[w]);
-            parent[here as usize] = parent[there as usize];
-            first &= first - 1;
+fn sparse_labels(
+    links: &Links<'_>,
+    here: &Row<'_>,
+    above: &Row<'_>,
+    labels: &mut [u32],
+    new_label: u32,
+    any_orphans: bool,
+) -> u32 {
+    for w in 0..here.starts.len() {
+        let mut contacts = links.contacts[w];
+        while let Some(up_to) = next_bit(&mut contacts) {
+            labels[here.run_at(w, up_to)] = labels[above.run_at(w, up_to)];
         }
     }
-    for w in 0..if any_later { words } else { 0 } {
-        let mut later = later[w];
-        while later != 0 {
-            let (here, there) = runs_at(later, starts[w], before[w], starts_above[w], before_above[w]);
-            forest::unite(parent, here, there);
-            later &= later - 1;
+    let mut new_labels = 0;
+    for w in 0..if any_orphans { here.starts.len() } else { 0 } {
+        let mut orphans = links.orphans[w];
+        while let Some(up_to) = next_bit(&mut orphans) {
+            // An orphan is marked at its end. A run that reaches into the word ends in it first.
+            let ended_before = here.before[w] - (links.left[w] & 1) as u32;
+            let run = ended_before + (links.ends[w] & up_to).count_ones() - 1;
+            labels[run as usize] = new_label + new_labels;
+            new_labels += 1;
         }
     }
+    new_labels
 }
 
-/// Of the pixels that are close to the one above, in place those where two runs first touch: both
-/// valid, and without a left neighbour in the same two runs that is linked upwards too.
+/// Takes the lowest set bit away; the bits up to and including it.
 #[inline(always)]
-fn find_contacts(close_up: &mut [u64], valid: &[u64], valid_above: &[u64], left: &[u64], left_above: &[u64]) {
-    let mut up_left = 0;
-    for w in 0..close_up.len() {
-        let up = close_up[w] & valid[w] & valid_above[w];
-        close_up[w] = up & !((up << 1 | up_left) & left[w] & left_above[w]);
-        up_left = up >> 63;
-    }
+fn next_bit(bits: &mut u64) -> Option<u64> {
+    let up_to = *bits ^ bits.wrapping_sub(1);
+    let any = *bits != 0;
+    *bits &= bits.wrapping_sub(1);
+    any.then_some(up_to)
 }
 
-/// Leaves in `contacts` each run's first and moves the others to `later`; whether there are any.
+/// Finds the pixels at which two runs first touch: linked upwards, and without a left neighbour in the
+/// same two runs that is too. Of these, the first of each run go to `contacts`, the others to `later`;
+/// runs without any are marked in `orphans`, at their ends.
 ///
 /// A run's pixels behind its first are a block of ones in `left`. Adding a one to a block carries
 /// through to its end, so the ones that the sum clears lie behind the contact that was added.
 #[inline(always)]
-fn split_contacts(contacts: &mut [u64], later: &mut [u64], left: &[u64]) -> bool {
-    let (mut contact_left, mut carry, mut any_later) = (0, false, 0);
-    for w in 0..contacts.len() {
-        let behind = (contacts[w] << 1 | contact_left) & left[w];
-        contact_left = contacts[w] >> 63;
+fn find_contacts(here: &RowLinks, left_above: &[u64], ends: &[u64], out: [&mut [u64]; 3]) -> Found {
+    let words = ends.len();
+    let [contacts, later, orphans] = out.map(|masks| &mut masks[..words]);
+    let (up, left, left_above) = (&here.up[..words], &here.left[..words], &left_above[..words]);
+    let (mut up_left, mut contact_left, mut carry) = (0, 0, false);
+    let (mut any_later, mut any_orphans) = (0, 0);
+    for w in 0..words {
+        let contact = up[w] & !((up[w] << 1 | up_left) & left[w] & left_above[w]);
+        let behind = (contact << 1 | contact_left) & left[w];
         let (sum, carry_1) = left[w].overflowing_add(behind);
         let (sum, carry_2) = sum.overflowing_add(carry.into());
-        carry = carry_1 | carry_2;
         let covered = (left[w] & !sum) | behind;
-        later[w] = contacts[w] & covered;
+        (up_left, contact_left, carry) = (up[w] >> 63, contact >> 63, carry_1 | carry_2);
+        (contacts[w], later[w]) = (contact & !covered, contact & covered);
+        orphans[w] = ends[w] & !(contact | covered);
+        any_orphans |= orphans[w];
         any_later |= later[w];
-        contacts[w] &= !covered;
     }
-    any_later != 0
+    Found { orphans: any_orphans != 0, later_contacts: any_later != 0 }
 }
 
-/// The runs here and above at the lowest set bit of `contact`: a pixel's run is the number of run
-/// starts up to it.
-#[inline(always)]
-fn runs_at(contact: u64, starts: u64, before: u32, starts_above: u64, before_above: u32) -> (u32, u32) {
-    let up_to = contact ^ (contact - 1);
-    (before + (starts & up_to).count_ones() - 1, before_above + (starts_above & up_to).count_ones() - 1)
+/// What a row has of what many rows have not.
+struct Found {
+    orphans: bool,
+    later_contacts: bool,
 }
 
-/// Unites the components on both sides of the border between two strips in the forest of the map's
-/// components.
+/// Unites the labels on both sides of the border between two strips, in the forest of all strips.
 #[inline(always)]
 pub(super) fn stitch<I: Isa, T: Pixel>(
     map: &DepthView<'_, T>,
     rule: &LinkRule<T>,
     upper: &Strip,
     lower: &mut Strip,
-    components: &mut [u32],
+    forest: &mut [u32],
 ) {
-    row_masks::<I, T>(map, lower.rows.start, rule, lower);
-    let (words, last_row) = (lower.words, upper.rows.len() - 1);
+    let (words, v, last_row) = (lower.words, lower.rows.start, upper.rows.len() - 1);
     let (starts, starts_above) = (&lower.starts[..words], &upper.starts[last_row * words..]);
     let (valid, valid_above) = (&lower.valid[..words], &upper.valid[last_row * words..]);
-    let Scratch { left, left_of_row_above, above, .. } = &mut lower.scratch;
+    let Scratch { above, here, ends: unused, contacts, later_contacts, orphans, .. } = &mut lower.scratch;
+    let masks = RowMasks { valid: unused, close_left: &mut here.left[..words], close_up: &mut here.up };
+    T::masks::<I>(map.row(v), map.row(v - 1), rule, masks);
     for w in 0..words {
-        left[w] = valid[w] & !starts[w];
-        left_of_row_above[w] = valid_above[w] & !starts_above[w];
+        here.up[w] &= valid[w] & valid_above[w];
+        here.left[w] = valid[w] & !starts[w];
+        above.left[w] = valid_above[w] & !starts_above[w];
     }
-    find_contacts(&mut above[..words], valid, valid_above, left, left_of_row_above);
-    let (mut before, mut before_above) = (0, upper.row_first_run[last_row]);
+    find_contacts(here, &above.left, unused, [contacts, later_contacts, orphans]);
+    let (mut runs, mut runs_above) = (0, upper.row_first_run[last_row] as usize - 1);
     for w in 0..words {
-        let mut contact = above[w];
-        while contact != 0 {
-            let (here, there) = runs_at(contact, starts[w], before, starts_above[w], before_above);
-            let here = lower.first_component as u32 + lower.forest[here as usize];
-            let there = upper.first_component as u32 + upper.forest[there as usize];
-            forest::unite(components, here, there);
-            contact &= contact - 1;
+        let mut contacts = contacts[w] | later_contacts[w];
+        while let Some(up_to) = next_bit(&mut contacts) {
+            let run = |before: usize, starts: u64| before + (starts & up_to).count_ones() as usize;
+            let here = lower.labels[run(runs, starts[w])] + lower.first_label as u32;
+            let there = upper.labels[run(runs_above, starts_above[w])] + upper.first_label as u32;
+            forest::unite(forest, here, there);
         }
-        before += starts[w].count_ones();
-        before_above += starts_above[w].count_ones();
+        runs += starts[w].count_ones() as usize;
+        runs_above += starts_above[w].count_ones() as usize;
     }
 }

@@ -25,7 +25,8 @@ pub struct MethodInfo {
     pub stages: &'static [&'static str],
     /// Its parameters, in the order of `build`'s values.
     pub params: &'static [Param],
-    /// Makes the method from one value for each parameter, checked.
+    /// Makes the method from one value for each parameter, in order; [`Error::Parameter`] for one
+    /// that is not accepted. Panics unless there is a value for each.
     pub build: fn(&[f64]) -> Result<Box<dyn Method>>,
 }
 
@@ -152,13 +153,12 @@ impl MethodInfo {
             })?;
             values[at] = value;
         }
-        self.check(&values)?; // Before `build` turns them into whole numbers.
         (self.build)(&values)
     }
 
     /// Checks one value for each parameter.
     fn check(&self, values: &[f64]) -> Result<()> {
-        assert_eq!(values.len(), self.params.len());
+        assert_eq!(values.len(), self.params.len(), "{} takes one value for each of its parameters", self.name);
         self.params.iter().zip(values).try_for_each(|(param, &value)| param.check(value))
     }
 }

@@ -21,7 +21,10 @@ pub(super) static INFO: MethodInfo = MethodInfo {
     about: "Groups neighbours whose values differ by at most theta; a group of more than `min` pixels is a plane (Hoa, Minh, Dung 2017).",
     stages: &["enhance", "group", "select", "fit", "label"],
     params: PARAMS,
-    build: |values| Ngaf::from_values(values).try_into(),
+    build: |values| {
+        INFO.check(values)?; // before any of them becomes a whole number
+        Ngaf::from_values(values).try_into()
+    },
 };
 
 const PARAMS: &[Param] = &[
@@ -154,7 +157,9 @@ impl TryFrom<Ngaf> for Box<dyn Method> {
 
     fn try_from(params: Ngaf) -> Result<Self> {
         INFO.check(&params.values())?;
-        Ok(Box::new(Runner { params, ..Runner::default() }))
+        let mut runner = Runner { params, ..Runner::default() };
+        runner.grouper.leave_out_singles(params.min >= 1);
+        Ok(Box::new(runner))
     }
 }
 

@@ -19,12 +19,12 @@ kernel!("avx2", Avx2, "avx2,bmi1,bmi2,popcnt,lzcnt", || {
 /// a vector's first lane, become the bits of a word.
 macro_rules! masks {
     ($name:ident, $t:ty, $load:path, $set:path, $bits:path,
-     |$a:ident, $b:ident, $zero:ident, $sentinel:ident, $low:ident, $high:ident, $theta:ident| $valid:expr, $close:expr) => {
+     |$a:ident, $b:ident, $sentinel:ident, $low:ident, $high:ident, $theta:ident| $valid:expr, $close:expr) => {
         #[target_feature(enable = "avx2,bmi1,bmi2")]
         fn $name(row: &[$t], up: &[$t], rule: &LinkRule<$t>, out: RowMasks<'_>) {
             let v = &rule.validity;
-            let [$zero, $sentinel, $low, $high, $theta] =
-                [0 as $t, v.sentinel, v.low, v.high, rule.theta].map(|x| $set(x as _));
+            let [$sentinel, $low, $high, $theta] =
+                [v.sentinel, v.low, rule.high_or_span, rule.theta].map(|x| $set(x as _));
             let valid = |here: *const $t| {
                 $bits(|lane| {
                     // SAFETY: `words` passes pointers to 64 pixels.
@@ -77,11 +77,15 @@ masks!(
     _mm256_loadu_si256,
     _mm256_set1_epi8,
     bits_8,
-    |a, b, zero, sentinel, low, high, theta| _mm256_andnot_si256(
-        _mm256_cmpeq_epi8(a, sentinel),
-        _mm256_cmpeq_epi8(_mm256_min_epu8(_mm256_max_epu8(a, low), high), a)
-    ),
-    _mm256_cmpeq_epi8(zero, _mm256_subs_epu8(_mm256_sub_epi8(_mm256_max_epu8(a, b), _mm256_min_epu8(a, b)), theta))
+    |a, b, sentinel, low, span, theta| {
+        let above_low = _mm256_sub_epi8(a, low);
+        let in_range = _mm256_cmpeq_epi8(_mm256_min_epu8(above_low, span), above_low);
+        _mm256_andnot_si256(_mm256_cmpeq_epi8(a, sentinel), in_range)
+    },
+    {
+        let distance = _mm256_sub_epi8(_mm256_max_epu8(a, b), _mm256_min_epu8(a, b));
+        _mm256_cmpeq_epi8(_mm256_min_epu8(distance, theta), distance)
+    }
 );
 
 masks!(
@@ -90,14 +94,15 @@ masks!(
     _mm256_loadu_si256,
     _mm256_set1_epi16,
     bits_16,
-    |a, b, zero, sentinel, low, high, theta| _mm256_andnot_si256(
-        _mm256_cmpeq_epi16(a, sentinel),
-        _mm256_cmpeq_epi16(_mm256_min_epu16(_mm256_max_epu16(a, low), high), a)
-    ),
-    _mm256_cmpeq_epi16(
-        zero,
-        _mm256_subs_epu16(_mm256_sub_epi16(_mm256_max_epu16(a, b), _mm256_min_epu16(a, b)), theta)
-    )
+    |a, b, sentinel, low, span, theta| {
+        let above_low = _mm256_sub_epi16(a, low);
+        let in_range = _mm256_cmpeq_epi16(_mm256_min_epu16(above_low, span), above_low);
+        _mm256_andnot_si256(_mm256_cmpeq_epi16(a, sentinel), in_range)
+    },
+    {
+        let distance = _mm256_sub_epi16(_mm256_max_epu16(a, b), _mm256_min_epu16(a, b));
+        _mm256_cmpeq_epi16(_mm256_min_epu16(distance, theta), distance)
+    }
 );
 
 masks!(
@@ -106,10 +111,12 @@ masks!(
     _mm256_loadu_ps,
     _mm256_set1_ps,
     bits_32,
-    |a, b, zero, sentinel, low, high, theta| _mm256_and_ps(
-        _mm256_and_ps(_mm256_cmp_ps::<_CMP_NEQ_UQ>(a, zero), _mm256_cmp_ps::<_CMP_NEQ_UQ>(a, sentinel)),
-        _mm256_and_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(a, low), _mm256_cmp_ps::<_CMP_LE_OQ>(a, high))
-    ),
+    |a, b, sentinel, low, high, theta| {
+        let there = _mm256_cmp_ps::<_CMP_NEQ_UQ>(a, _mm256_setzero_ps());
+        let there = _mm256_and_ps(there, _mm256_cmp_ps::<_CMP_NEQ_UQ>(a, sentinel));
+        let in_range = _mm256_and_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(a, low), _mm256_cmp_ps::<_CMP_LE_OQ>(a, high));
+        _mm256_and_ps(there, in_range)
+    },
     _mm256_cmp_ps::<_CMP_LE_OQ>(_mm256_andnot_ps(_mm256_set1_ps(-0.0), _mm256_sub_ps(a, b)), theta)
 );
 
@@ -130,8 +137,8 @@ impl Isa for Avx2 {
         unsafe { masks_f32(row, up, rule, out) }
     }
     #[inline(always)]
-    fn positions(mask: &[u64], count: usize, out: &mut Vec<u16>) {
-        Portable::positions(mask, count, out);
+    fn positions(mask: &[u64], count: usize, list: &mut Vec<u16>) {
+        Portable::positions(mask, count, list);
     }
     #[inline(always)]
     fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {

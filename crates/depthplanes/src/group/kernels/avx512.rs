@@ -1,33 +1,39 @@
 //! AVX-512: comparisons give bit masks directly, `vpcompressw` lists positions, `vpermw` paints.
 
-use super::{Isa, RowMasks, SLACK, kernel, words};
+use super::{Isa, Links, RowMasks, SLACK, kernel, words};
 use crate::group::LinkRule;
 use std::arch::x86_64::*;
 
 pub(super) struct Avx512;
 
-kernel!("avx512", Avx512, "avx512f,avx512bw,avx512vl,avx512vbmi2,avx512bitalg,bmi1,bmi2,popcnt,lzcnt", || {
-    is_x86_feature_detected!("avx512f")
-        && is_x86_feature_detected!("avx512bw")
-        && is_x86_feature_detected!("avx512vl")
-        && is_x86_feature_detected!("avx512vbmi2")
-        && is_x86_feature_detected!("avx512bitalg")
-        && is_x86_feature_detected!("bmi1")
-        && is_x86_feature_detected!("bmi2")
-        && is_x86_feature_detected!("popcnt")
-        && is_x86_feature_detected!("lzcnt")
-});
+kernel!(
+    "avx512",
+    Avx512,
+    "avx512f,avx512bw,avx512vl,avx512vbmi2,avx512bitalg,avx512vpopcntdq,bmi1,bmi2,popcnt,lzcnt",
+    || {
+        is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512bw")
+            && is_x86_feature_detected!("avx512vl")
+            && is_x86_feature_detected!("avx512vbmi2")
+            && is_x86_feature_detected!("avx512bitalg")
+            && is_x86_feature_detected!("avx512vpopcntdq")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2")
+            && is_x86_feature_detected!("popcnt")
+            && is_x86_feature_detected!("lzcnt")
+    }
+);
 
 /// One pixel type: its lanes, and the masks of one vector that say which lanes are valid and which
 /// are within theta of each other.
 macro_rules! masks {
     ($name:ident, $t:ty, $lanes:literal, $load:path, $set:path,
-     |$a:ident, $b:ident, $zero:ident, $sentinel:ident, $low:ident, $high:ident, $theta:ident| $valid:expr, $close:expr) => {
+     |$a:ident, $b:ident, $sentinel:ident, $low:ident, $high:ident, $theta:ident| $valid:expr, $close:expr) => {
         #[target_feature(enable = "avx512f,avx512bw,avx512vl,bmi1,bmi2")]
         fn $name(row: &[$t], up: &[$t], rule: &LinkRule<$t>, out: RowMasks<'_>) {
             let v = &rule.validity;
-            let [$zero, $sentinel, $low, $high, $theta] =
-                [0 as $t, v.sentinel, v.low, v.high, rule.theta].map(|x| $set(x as _));
+            let [$sentinel, $low, $high, $theta] =
+                [v.sentinel, v.low, rule.high_or_span, rule.theta].map(|x| $set(x as _));
             let valid = |here: *const $t| {
                 (0..64).step_by($lanes).fold(0u64, |word, lane| {
                     // SAFETY: `words` passes pointers to 64 pixels.
@@ -54,8 +60,8 @@ masks!(
     64,
     _mm512_loadu_si512,
     _mm512_set1_epi8,
-    |a, b, _zero, sentinel, low, high, theta| _mm512_mask_cmpneq_epi8_mask(
-        _mm512_cmpeq_epi8_mask(a, _mm512_min_epu8(_mm512_max_epu8(a, low), high)),
+    |a, b, sentinel, low, span, theta| _mm512_mask_cmpneq_epi8_mask(
+        _mm512_cmple_epu8_mask(_mm512_sub_epi8(a, low), span),
         a,
         sentinel
     ),
@@ -68,8 +74,8 @@ masks!(
     32,
     _mm512_loadu_si512,
     _mm512_set1_epi16,
-    |a, b, _zero, sentinel, low, high, theta| _mm512_mask_cmpneq_epi16_mask(
-        _mm512_cmpeq_epi16_mask(a, _mm512_min_epu16(_mm512_max_epu16(a, low), high)),
+    |a, b, sentinel, low, span, theta| _mm512_mask_cmpneq_epi16_mask(
+        _mm512_cmple_epu16_mask(_mm512_sub_epi16(a, low), span),
         a,
         sentinel
     ),
@@ -82,7 +88,7 @@ masks!(
     16,
     _mm512_loadu_ps,
     _mm512_set1_ps,
-    |a, b, zero, sentinel, low, high, theta| _mm512_cmp_ps_mask::<_CMP_NEQ_UQ>(a, zero)
+    |a, b, sentinel, low, high, theta| _mm512_cmp_ps_mask::<_CMP_NEQ_UQ>(a, _mm512_setzero_ps())
         & _mm512_cmp_ps_mask::<_CMP_NEQ_UQ>(a, sentinel)
         & _mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, low)
         & _mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, high),
@@ -106,9 +112,22 @@ impl Isa for Avx512 {
         unsafe { masks_f32(row, up, rule, out) }
     }
     #[inline(always)]
-    fn positions(mask: &[u64], count: usize, out: &mut Vec<u16>) {
+    fn positions(mask: &[u64], count: usize, list: &mut Vec<u16>) {
         // SAFETY: as above.
-        unsafe { positions(mask, count, out) }
+        unsafe { positions(mask, count, list) }
+    }
+    const HAS_DENSE_LABELS: bool = true;
+    #[inline(always)]
+    fn dense_labels(
+        links: &Links<'_>,
+        starts_above: &[u64],
+        above: &[u32],
+        inherited: &mut [u32],
+        labels: &mut [u32],
+        new_label: u32,
+    ) -> u32 {
+        // SAFETY: as above.
+        unsafe { dense_labels(links, starts_above, above, inherited, labels, new_label) }
     }
     #[inline(always)]
     fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
@@ -164,13 +183,13 @@ static LOWER_HALF: [u16; 32] = {
 
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi2,popcnt")]
-fn positions(mask: &[u64], count: usize, out: &mut Vec<u16>) {
-    assert!(out.capacity() - out.len() >= count + SLACK);
+fn positions(mask: &[u64], count: usize, list: &mut Vec<u16>) {
+    assert!(list.capacity() >= count + SLACK);
     // SAFETY: each store writes 32 elements from the first unused one, of which `count_ones` stay.
     // There is room for `count` and 64 more, and the pointer is held to `count` word by word.
     unsafe {
-        let end = out.as_mut_ptr().add(out.len() + count);
-        let mut next = out.as_mut_ptr().add(out.len());
+        let mut next = list.as_mut_ptr();
+        let end = next.add(count);
         let lanes = _mm512_loadu_si512(LANE.as_ptr().cast());
         for (first, &word) in (0i16..).step_by(64).zip(mask) {
             if word == 0 {
@@ -183,8 +202,75 @@ fn positions(mask: &[u64], count: usize, out: &mut Vec<u16>) {
             }
             assert!(next <= end, "more bits than counted");
         }
-        out.set_len(out.len() + count);
+        list.set_len(count);
     }
+}
+
+/// Spreads the labels above over the pixels, compresses those at first contacts to a list, and
+/// expands the list to the runs that have one, and new labels to the others.
+#[inline]
+#[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vpopcntdq,bmi1,bmi2,popcnt")]
+fn dense_labels(
+    links: &Links<'_>,
+    starts_above: &[u64],
+    above: &[u32],
+    inherited: &mut [u32],
+    labels: &mut [u32],
+    new_label: u32,
+) -> u32 {
+    let ones = |words: &[u64]| words.iter().map(|word| word.count_ones() as usize).sum::<usize>();
+    assert!(above.len() > ones(starts_above) && inherited.len() >= ones(links.contacts) + SLACK);
+    assert!(labels.len() >= ones(links.ends) + SLACK && links.ends.len() == starts_above.len());
+    let lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    // The bits up to and including a lane's own.
+    let up_to = _mm512_sub_epi32(_mm512_sllv_epi32(_mm512_set1_epi32(2), lanes), _mm512_set1_epi32(1));
+    let (mut begun, mut listed, mut taken, mut run, mut new) = (0, 0, 0, 0, new_label);
+    for w in 0..starts_above.len() {
+        for shift in (0..64).step_by(16) {
+            let starts = (starts_above[w] >> shift) as u16;
+            let contacts = (links.contacts[w] >> shift) as u16;
+            // As in `paint_row`: the table is read from the run of the first pixel.
+            let table = begun + usize::from(starts & 1);
+            let bits = _mm512_and_si512(_mm512_set1_epi32(i32::from(starts & !1)), up_to);
+            let index = _mm512_popcnt_epi32(bits);
+            let present = u16::MAX >> 16usize.saturating_sub(above.len() - table).min(16);
+            // SAFETY: the masked load reads what `above` has from `table` on; the store writes 16
+            // elements from `listed`, of which no more than the contacts stay.
+            unsafe {
+                let table = _mm512_maskz_loadu_epi32(present, above.as_ptr().add(table).cast());
+                let pixels = _mm512_permutexvar_epi32(index, table);
+                _mm512_storeu_si512(
+                    inherited.as_mut_ptr().add(listed).cast(),
+                    _mm512_maskz_compress_epi32(contacts, pixels),
+                );
+            }
+            begun += starts.count_ones() as usize;
+            listed += contacts.count_ones() as usize;
+        }
+        let mut ends = links.ends[w].count_ones() as usize;
+        let mut orphans = _pext_u64(links.orphans[w], links.ends[w]);
+        while ends > 0 {
+            let here = u16::MAX >> (16 - ends.min(16));
+            let (fresh, heirs) = (orphans as u16 & here, !(orphans as u16) & here);
+            // SAFETY: the load reads 16 elements from `taken`, which is not above the contacts; the store
+            // writes 16 from `run`, which is below the runs.
+            unsafe {
+                let fresh_labels = _mm512_add_epi32(lanes, _mm512_set1_epi32(new as i32));
+                let list = _mm512_loadu_si512(inherited.as_ptr().add(taken).cast());
+                let both = _mm512_or_si512(
+                    _mm512_maskz_expand_epi32(fresh, fresh_labels),
+                    _mm512_maskz_expand_epi32(heirs, list),
+                );
+                _mm512_storeu_si512(labels.as_mut_ptr().add(run).cast(), both);
+            }
+            new += fresh.count_ones();
+            taken += heirs.count_ones() as usize;
+            run += ends.min(16);
+            ends -= ends.min(16);
+            orphans >>= 16;
+        }
+    }
+    new - new_label
 }
 
 /// The label of a pixel is the entry of the table at the number of run starts up to it, counted
@@ -192,8 +278,7 @@ fn positions(mask: &[u64], count: usize, out: &mut Vec<u16>) {
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512bitalg,popcnt")]
 fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
-    let runs: usize = starts.iter().map(|word| word.count_ones() as usize).sum();
-    assert!(labels.len() >= runs + SLACK && valid.len() == starts.len());
+    assert!(labels.len() >= starts.len() * 64 + SLACK && valid.len() == starts.len());
     // SAFETY: all three are 64 bytes.
     let [up_to, own_half, lower_half] =
         unsafe { [&UP_TO, &OWN_HALF, &LOWER_HALF].map(|constant| _mm512_loadu_si512(constant.as_ptr().cast())) };
@@ -209,7 +294,7 @@ fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
             _mm512_popcnt_epi16(_mm512_shuffle_epi8(bits, lower_half)),
         );
         let within = u32::MAX >> (32 - (row.len() - at).min(32));
-        // SAFETY: `table + 32 <= runs + SLACK`, checked above; the masked store writes only pixels of the row.
+        // SAFETY: `table` is at most the pixels before the block, so 32 more are there, checked above; the masked store writes only pixels of the row.
         unsafe {
             let labels = _mm512_loadu_si512(labels.as_ptr().add(table).cast());
             let painted = _mm512_maskz_permutexvar_epi16(valid, index, labels);

@@ -13,7 +13,7 @@ mod portable;
 mod words;
 
 use super::LinkRule;
-use super::strip::{RowMasks, Strip};
+use super::strip::{Links, RowMasks, Strip};
 use crate::map::{DepthView, Pixel};
 use std::fmt;
 #[cfg(target_arch = "x86_64")]
@@ -32,12 +32,30 @@ pub trait Isa {
     /// Masks of one row of floating-point values.
     fn masks_f32(row: &[f32], up: &[f32], rule: &LinkRule<f32>, out: RowMasks<'_>);
 
-    /// Appends the positions of the `count` set bits to `out`, which has [`SLACK`] to spare.
-    fn positions(mask: &[u64], count: usize, out: &mut Vec<u16>);
+    /// Lists the positions of the `count` set bits. The list has room for them and [`SLACK`] to spare.
+    fn positions(mask: &[u64], count: usize, list: &mut Vec<u16>);
+
+    /// Whether [`Isa::dense_labels`] is worth calling for rows of many runs.
+    const HAS_DENSE_LABELS: bool = false;
+
+    /// Labels the runs of a row, many at a time; how many labels are new. `above[0]` stands before the
+    /// label of the first run above; `labels` begins with the row's first run; both have [`SLACK`] to
+    /// spare. `inherited` is memory for a label per pixel.
+    fn dense_labels(
+        _links: &Links<'_>,
+        _starts_above: &[u64],
+        _above: &[u32],
+        _inherited: &mut [u32],
+        _labels: &mut [u32],
+        _new_label: u32,
+    ) -> u32 {
+        unreachable!("only called where HAS_DENSE_LABELS says so")
+    }
 
     /// Writes labels of part of a row: 0 where not valid, else the label of the pixel's run.
     /// `labels[i]` belongs to the i-th run that starts in it, `labels[0]` to one that reaches into it;
-    /// there is [`SLACK`] to spare.
+    /// there is room for a
+    /// label for each pixel and [`SLACK`] to spare.
     fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]);
 }
 
@@ -83,8 +101,8 @@ macro_rules! kernel {
                 strip::stitch::<$isa, T>(map, rule, upper, lower, parent);
             }
             #[target_feature(enable = $features)]
-            fn paint(rows: &strip::Strip, label_of_component: &[u16], image: &mut [u16]) {
-                super::paint_strip::<$isa>(rows, label_of_component, image);
+            fn paint(rows: &strip::Strip, label_of_provisional: &[u16], image: &mut [u16]) {
+                super::paint_strip::<$isa>(rows, label_of_provisional, image);
             }
             super::Kernel {
                 name: $name,
@@ -141,9 +159,9 @@ impl Kernel {
         unsafe { (T::compiled(self).stitch)(map, rule, upper, lower, parent) }
     }
 
-    pub(super) fn paint(&self, strip: &Strip, label_of_component: &[u16], image: &mut [u16]) {
+    pub(super) fn paint(&self, strip: &Strip, label_of_provisional: &[u16], image: &mut [u16]) {
         // SAFETY: as in `scan`.
-        unsafe { (self.paint)(strip, label_of_component, image) }
+        unsafe { (self.paint)(strip, label_of_provisional, image) }
     }
 }
 
@@ -156,20 +174,20 @@ impl fmt::Debug for Kernel {
 /// Words of a row that are painted at a time, so that their runs' labels fit on the stack.
 const BLOCK: usize = 16;
 
-/// Writes a strip's part of the label image, given the labels of its components.
+/// Writes a strip's part of the label image, given the labels of its provisional labels.
 #[inline(always)]
-fn paint_strip<I: Isa>(strip: &Strip, label_of_component: &[u16], image: &mut [u16]) {
-    let mut components = &strip.forest[..];
+fn paint_strip<I: Isa>(strip: &Strip, label_of_provisional: &[u16], image: &mut [u16]) {
+    let mut provisional = strip.labels();
     let mut labels = [0; 1 + BLOCK * 64 + SLACK];
     for (row, pixels) in image.chunks_exact_mut(strip.width).enumerate() {
         let words = row * strip.words..(row + 1) * strip.words;
         let (valid, starts) = (strip.valid[words.clone()].chunks(BLOCK), strip.starts[words].chunks(BLOCK));
         for ((valid, starts), pixels) in valid.zip(starts).zip(pixels.chunks_mut(BLOCK * 64)) {
             let runs: usize = starts.iter().map(|word| word.count_ones() as usize).sum();
-            let (here, after) = components.split_at(runs);
-            components = after;
-            for (label, &component) in labels[1..].iter_mut().zip(here) {
-                *label = label_of_component[component as usize];
+            let (here, after) = provisional.split_at(runs);
+            provisional = after;
+            for (label, &provisional) in labels[1..].iter_mut().zip(here) {
+                *label = label_of_provisional[provisional as usize];
             }
             I::paint_row(valid, starts, &labels, pixels);
             labels[0] = labels[runs]; // the run that may reach into the next block

@@ -26,15 +26,16 @@ impl Isa for Portable {
     }
 
     #[inline(always)]
-    fn positions(mask: &[u64], count: usize, out: &mut Vec<u16>) {
-        let mut end = out.len();
-        out.resize(end + count + 4, 0);
+    fn positions(mask: &[u64], count: usize, list: &mut Vec<u16>) {
+        let mut end = 0;
+        list.clear();
+        list.resize(count + 4, 0);
         for (first, &word) in (0u32..).step_by(64).zip(mask) {
             let mut rest = word;
             let mut at = end;
             // Four at a time, the surplus being overwritten, spares a branch for each.
             while rest != 0 {
-                for position in &mut out[at..at + 4] {
+                for position in &mut list[at..at + 4] {
                     *position = (first + rest.trailing_zeros()) as u16;
                     rest &= rest.wrapping_sub(1);
                 }
@@ -42,7 +43,7 @@ impl Isa for Portable {
             }
             end += word.count_ones() as usize;
         }
-        out.truncate(end);
+        list.truncate(count);
     }
 
     #[inline(always)]
