@@ -7,6 +7,7 @@
 use crate::camera::{Intrinsics, Measure, Sensor};
 use crate::detection::{MapFit, MetricPlane, PixelBox, Plane, share};
 use crate::fit::{self, AffineFit, Moments, RunSums};
+use crate::group::vectorised;
 use crate::map::{DepthView, Pixel};
 use crate::select::LabelledRun;
 
@@ -66,6 +67,21 @@ impl Describer {
             (Some(_), Measure::Depth { metres }) => Some(move |value: T| 1.0 / (metres * value.into())),
             _ => None,
         };
+        vectorised(
+            #[inline(always)]
+            || self.sum(map, runs, inverse, &inner),
+        );
+        self.tallies.iter_mut().for_each(|tally| tally.finish(sensor));
+    }
+
+    #[inline(always)]
+    fn sum<T: Pixel>(
+        &mut self,
+        map: &DepthView<'_, T>,
+        runs: &[LabelledRun],
+        inverse: Option<impl Fn(T) -> f64 + Copy>,
+        inner: &Margin,
+    ) {
         for run in runs {
             let values = run.of(map);
             let at = usize::from(run.label) - 1;
@@ -80,12 +96,12 @@ impl Describer {
             tally.inner_pixels += inner.pixels(run);
             tally.bounding_box.include(run);
             let (u, v) = (f64::from(run.u_first) - tally.origin[0], f64::from(run.v) - tally.origin[1]);
-            tally.value.add(u, v, values, |value| value.into());
+            tally.value.sums.add_run(u, v, &T::run_sums(values, T::from_f64(tally.value.first)));
             if let Some(inverse) = inverse {
-                tally.inverse.add(u, v, values, inverse);
+                let first = tally.inverse.first;
+                tally.inverse.sums.add_run(u, v, &RunSums::of(values, |_, value| inverse(value) - first));
             }
         }
-        self.tallies.iter_mut().for_each(|tally| tally.finish(sensor));
     }
 
     /// The planes' tallies; label 1 is the first.
@@ -144,12 +160,17 @@ impl Describer {
     ) {
         self.distances.reserve(self.tallies.capacity());
         self.distances.resize(self.tallies.len(), Distances::default());
-        for run in runs {
-            let at = usize::from(run.label) - 1;
-            if let Some(plane) = &self.tallies[at].inverse_depth {
-                self.distances[at].add(run, run.of(map), plane, camera, &depth_m);
-            }
-        }
+        vectorised(
+            #[inline(always)]
+            || {
+                for run in runs {
+                    let at = usize::from(run.label) - 1;
+                    if let Some(plane) = &self.tallies[at].inverse_depth {
+                        self.distances[at].add(run, run.of(map), plane, camera, &depth_m);
+                    }
+                }
+            },
+        );
     }
 }
 
@@ -189,11 +210,6 @@ impl Tally {
 }
 
 impl Quantity {
-    fn add<T: Pixel>(&mut self, u: f64, v: f64, values: &[T], quantity: impl Fn(T) -> f64) {
-        let first = self.first;
-        self.sums.add_run(u, v, &RunSums::of(values, |value| quantity(value) - first));
-    }
-
     fn fit(&self, [u, v]: [f64; 2]) -> Option<AffineFit> {
         self.sums.fit().map(|fit| fit.moved([u, v, self.first]))
     }
@@ -227,6 +243,7 @@ impl Margin {
 }
 
 impl Distances {
+    #[inline(always)]
     fn add<T: Pixel>(
         &mut self,
         run: &LabelledRun,
@@ -237,18 +254,15 @@ impl Distances {
     ) {
         let (u, v) = (f64::from(run.u_first), f64::from(run.v));
         let (first, slope) = (plane.at(u, v), plane.abc[0]);
-        let [squares, depth, depth_k, behind] = fit::sum_terms(values, |k, value| {
-            let z = depth_m(value);
-            let relative = 1.0 - z * (first + slope * k); // z (q - q of the plane)
-            let behind = if z > 0.0 && z < f64::INFINITY { 0.0 } else { 1.0 };
-            [relative * relative, z, z * k, behind]
-        });
-        self.squares += squares;
-        self.behind_infinity |= behind > 0.0;
+        let depth = RunSums::of(values, |_, value| depth_m(value));
+        let relative = RunSums::of(values, |k, value| 1.0 - depth_m(value) * (first + slope * k)); // z (q - q of the plane)
+        let is_behind = |z: f64| !(z > 0.0 && z < f64::INFINITY);
+        self.behind_infinity |= values.iter().fold(false, |any, &value| any | is_behind(depth_m(value)));
+        self.squares += relative.qq;
         let ray = camera.ray(u, v);
-        self.point[0] += ray[0] * depth + depth_k / camera.fx;
-        self.point[1] += ray[1] * depth;
-        self.point[2] += depth;
+        self.point[0] += ray[0] * depth.q + depth.kq / camera.fx;
+        self.point[1] += ray[1] * depth.q;
+        self.point[2] += depth.q;
     }
 
     /// The metric plane: a point's distance from it is z |q - q of the plane| times the plane's

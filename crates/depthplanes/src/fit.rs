@@ -50,7 +50,7 @@ impl Moments {
 
     /// Adds a run of pixels of one row: columns `u, u + 1, ..`, row `v`, and the sums over k = 0, 1 ..
     /// of their values q_k.
-    #[inline]
+    #[inline(always)]
     pub fn add_run(&mut self, u: f64, v: f64, values: &RunSums) {
         let n = values.n;
         let sum_k = n * (n - 1.0) / 2.0;
@@ -117,47 +117,89 @@ pub struct RunSums {
 }
 
 impl RunSums {
-    /// Sums of a run's values.
-    #[inline]
-    pub fn of<T: Copy>(values: &[T], q: impl Fn(T) -> f64) -> Self {
-        let [q, kq, qq] = sum_terms(values, |k, value| {
-            let q = q(value);
-            [q, k * q, q * q]
-        });
-        RunSums { n: values.len() as f64, q, kq, qq }
-    }
-}
-
-/// Lanes that the sums of long runs are spread over, always the same, so that every processor rounds
-/// alike.
-const LANES: usize = 8;
-
-/// Sums of some terms over a run's values, each with its number k = 0, 1 ..
-#[inline(always)]
-pub(crate) fn sum_terms<T: Copy, const N: usize>(values: &[T], terms: impl Fn(f64, T) -> [f64; N]) -> [f64; N] {
-    let mut sums = [0.0; N];
-    let blocks = values.chunks_exact(LANES);
-    let rest = blocks.remainder();
-    if values.len() >= LANES {
-        let mut lanes = [[0.0; LANES]; N];
-        let mut first = 0.0;
-        for block in blocks {
-            for lane in 0..LANES {
-                let terms = terms(first + lane as f64, block[lane]);
-                (0..N).for_each(|n| lanes[n][lane] += terms[n]);
-            }
-            first += LANES as f64;
+    /// Sums of a run's values, each turned into q by its number k and itself.
+    #[inline(always)]
+    pub fn of<T: Copy>(values: &[T], q: impl Fn(f64, T) -> f64) -> Self {
+        let mut sums = RunSums::default();
+        if values.len() < LANES {
+            values.iter().for_each(|&value| sums.push(q(sums.n, value)));
+            return sums;
         }
-        sums = lanes.map(|lanes| lanes.iter().sum());
+        let mut block = [0.0; BLOCK];
+        for values in values.chunks(BLOCK) {
+            for (k, (block, &value)) in block.iter_mut().zip(values).enumerate() {
+                *block = q(sums.n + NUMBERS[k], value);
+            }
+            sums.append(&block[..values.len()]);
+        }
+        sums
     }
-    let mut k = (values.len() - rest.len()) as f64;
-    for &value in rest {
-        let terms = terms(k, value);
-        (0..N).for_each(|n| sums[n] += terms[n]);
-        k += 1.0;
+
+    /// Sums of whole numbers, less `first` each. Exact.
+    #[inline(always)]
+    pub(crate) fn of_whole<T: Copy + Into<u32>>(values: &[T], first: u32) -> Self {
+        let (mut sum, mut sum_k, mut squares) = (0u64, 0u64, 0u64);
+        for (k, &value) in (0u32..).zip(values) {
+            let value: u32 = value.into(); // k and the value have 16 bits
+            sum += u64::from(value);
+            sum_k += u64::from(k * value);
+            squares += u64::from(value * value);
+        }
+        let (n, first) = (values.len() as i64, i64::from(first));
+        let (sum, sum_k, squares) = (sum as i64, sum_k as i64, squares as i64);
+        RunSums {
+            n: n as f64,
+            q: (sum - n * first) as f64,
+            kq: (sum_k - n * (n - 1) / 2 * first) as f64,
+            qq: (squares - 2 * first * sum + n * first * first) as f64,
+        }
     }
-    sums
+
+    /// Adds the values that follow those already summed.
+    #[inline(always)]
+    fn append(&mut self, q: &[f64]) {
+        let mut lanes = [[0.0; LANES]; 3];
+        let blocks = q.chunks_exact(LANES);
+        let rest = blocks.remainder();
+        for (q, k) in blocks.zip(NUMBERS.chunks_exact(LANES)) {
+            for lane in 0..LANES {
+                lanes[0][lane] += q[lane];
+                lanes[1][lane] += k[lane] * q[lane];
+                lanes[2][lane] += q[lane] * q[lane];
+            }
+        }
+        let [sum, sum_k, squares] = lanes.map(|lanes| lanes.iter().sum::<f64>());
+        self.kq += self.n * sum + sum_k;
+        self.q += sum;
+        self.qq += squares;
+        self.n += (q.len() - rest.len()) as f64;
+        rest.iter().for_each(|&q| self.push(q));
+    }
+
+    /// Adds the value that follows those already summed.
+    #[inline(always)]
+    fn push(&mut self, q: f64) {
+        self.q += q;
+        self.kq += self.n * q;
+        self.qq += q * q;
+        self.n += 1.0;
+    }
 }
+
+/// Lanes that sums are spread over, always the same, so that every processor rounds alike.
+const LANES: usize = 8;
+/// Values that are turned into q before they are summed.
+const BLOCK: usize = 64;
+/// 0, 1, .. 63.
+const NUMBERS: [f64; BLOCK] = {
+    let mut numbers = [0.0; BLOCK];
+    let mut k = 0;
+    while k < BLOCK {
+        numbers[k] = k as f64;
+        k += 1;
+    }
+    numbers
+};
 
 /// `q = a u + b v + c`, least squares.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -17,6 +17,7 @@ mod strip;
 
 use crate::error::{Error, Result};
 use crate::map::{DepthView, Pixel, Validity};
+pub(crate) use kernels::vectorised;
 pub(crate) use kernels::{Compiled, Isa};
 pub use kernels::{Kernel, kernels};
 #[cfg(feature = "parallel")]

@@ -7,13 +7,22 @@ use std::arch::x86_64::*;
 
 pub(super) struct Avx2;
 
-kernel!("avx2", Avx2, "avx2,bmi1,bmi2,popcnt,lzcnt", || {
+kernel!("avx2", Avx2, "avx2,bmi1,bmi2,popcnt,lzcnt", is_here);
+
+/// Whether this processor has the features of this file.
+pub(super) fn is_here() -> bool {
     is_x86_feature_detected!("avx2")
         && is_x86_feature_detected!("bmi1")
         && is_x86_feature_detected!("bmi2")
         && is_x86_feature_detected!("popcnt")
         && is_x86_feature_detected!("lzcnt")
-});
+}
+
+/// Runs `work` with its code compiled for these vectors.
+#[target_feature(enable = "avx2,bmi1,bmi2,popcnt,lzcnt")]
+pub(super) fn run<R>(work: impl FnOnce() -> R) -> R {
+    work()
+}
 
 /// One pixel type: how lanes are compared, and how the lanes of a condition, given the position of
 /// a vector's first lane, become the bits of a word.

@@ -131,6 +131,24 @@ pub fn kernels() -> impl Iterator<Item = &'static Kernel> {
     KERNELS.iter().filter(|kernel| (kernel.runs_here)())
 }
 
+/// Runs `work`, compiled for this processor's vectors as well. It does the same additions in the same
+/// order on any of them, so its results are the same.
+#[inline(always)]
+pub(crate) fn vectorised<R>(work: impl FnOnce() -> R) -> R {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if avx512::is_here() {
+            // SAFETY: the features were just found.
+            return unsafe { avx512::run(work) };
+        }
+        if avx2::is_here() {
+            // SAFETY: the features were just found.
+            return unsafe { avx2::run(work) };
+        }
+    }
+    work()
+}
+
 impl Kernel {
     /// The fastest kernel that this processor runs.
     pub fn best() -> &'static Kernel {
