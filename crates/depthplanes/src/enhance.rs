@@ -53,7 +53,7 @@ impl Enhancer {
         window: u32,
         passes: u32,
     ) -> Result<(DepthView<'a, T>, usize)> {
-        if !WINDOW.contains(&window) || window % 2 == 0 {
+        if !WINDOW.contains(&window) || window.is_multiple_of(2) {
             let accepted = format!("an odd whole number of pixels from {} to {}", WINDOW.start(), WINDOW.end());
             return Err(Error::Parameter { name: "window", given: window.into(), accepted });
         }

@@ -100,7 +100,7 @@ const PARAMS: &[Param] = &[
     },
 ];
 
-/// Parameters of [`ngaf`](self); the defaults are the paper's.
+/// Parameters of `ngaf`; the defaults are the paper's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ngaf {
     /// Largest difference between neighbours of one group, map units, 0 and up (section 3c).
