@@ -179,7 +179,7 @@ fn demo_command() -> clap::Command {
 }
 
 fn completions_command() -> clap::Command {
-    let shell = Arg::new("shell").required(true).value_parser(value_parser!(Shell));
+    let shell = Arg::new("shell").value_name("SHELL").required(true).value_parser(value_parser!(Shell));
     clap::Command::new("completions").about("Prints the completion script for a shell").arg(shell)
 }
 

@@ -96,7 +96,8 @@ fn is_map(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let known = FORMATS.iter().any(|format| format.extensions.contains(&extension.as_str()));
-    let ours = OUTPUTS.iter().any(|output| name.ends_with(&format!(".{}", output.file)));
+    // `detect` writes INPUT.labels.png, `demo` writes labels.png.
+    let ours = OUTPUTS.iter().any(|output| name == output.file || name.ends_with(&format!(".{}", output.file)));
     known && !ours && !name.starts_with('.') && path.is_file()
 }
 

@@ -82,7 +82,7 @@ fn map_heading() -> Vec<String> {
 fn metric_row(plane: &Plane) -> Vec<String> {
     let middle = plane.metric.map_or(unknown(5), |metric| {
         let mut cells = vec![format!("{:.3} m", metric.plane.distance)];
-        cells.extend(metric.plane.normal.map(|x| format!("{x:.3}")));
+        cells.extend(metric.plane.normal.map(direction));
         cells.push(format!("{:.1} mm", 1e3 * metric.rms_m));
         cells
     });
@@ -136,14 +136,18 @@ pub(crate) fn advice(report: &Report<'_>) -> Vec<String> {
 /// Differences between neighbours of a surface, metres, that depth cameras show at a few metres.
 const USUAL_STEP_M: f64 = 0.005;
 
+/// More planes than a scene has: surfaces have fallen into bands.
+const MANY_PLANES: usize = 200;
+
 /// A parameter in map units means another length in each encoding; says so where that matters.
 fn units_advice(report: &Report<'_>) -> Vec<String> {
     let Measure::Depth { metres } = report.frame.sensor.measure else { return Vec::new() };
-    let few = report.detection.labelled_share() < 0.25;
+    let detection = report.detection;
+    let doubtful = detection.labelled_share() < 0.25 || detection.planes.len() > MANY_PLANES;
     let mut notes = Vec::new();
     for (param, value) in report.method.params.iter().zip(report.parameters) {
         let given_m = value * metres;
-        let odd = given_m > 20.0 * USUAL_STEP_M || (few && given_m < USUAL_STEP_M / 2.0);
+        let odd = given_m > 20.0 * USUAL_STEP_M || (doubtful && given_m < USUAL_STEP_M / 2.0);
         // 0 switches a parameter off, whatever the unit.
         if param.unit == "map units" && *value > 0.0 && odd {
             notes.push(format!(
@@ -162,6 +166,12 @@ fn units_advice(report: &Report<'_>) -> Vec<String> {
 
 fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
+}
+
+/// A component of a unit vector, never `-0.000`.
+fn direction(x: f64) -> String {
+    let text = format!("{x:.3}");
+    if text == "-0.000" { "0.000".into() } else { text }
 }
 
 /// A length with the unit that suits it.

@@ -55,6 +55,16 @@ fn demo_leaves_a_depth_map_and_every_output() {
 }
 
 #[test]
+fn the_folder_of_the_demo_holds_one_map_and_many_planes_are_remarked_on() {
+    let bench = Bench::new("demo_folder");
+    bench.run(&["demo", "--out-dir", "d"]).ok();
+    let ran = bench.run(&["detect", "d", "--rows", "1"]);
+    assert!(ran.out.starts_with("d/depth.png: "), "{ran:?}");
+    assert!(ran.err.contains("theta 1 is 1 mm here") && ran.err.contains("try --theta 5"), "{ran:?}");
+    assert!(!ran.ok().contains("labels.png"));
+}
+
+#[test]
 fn the_command_that_the_demo_prints_finds_the_same_planes() {
     let bench = Bench::new("demo_again");
     let out = bench.run(&["demo", "--out-dir", "d"]).ok();

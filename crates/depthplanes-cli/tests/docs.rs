@@ -1,4 +1,4 @@
-//! Every command in the docs is executed, and prints what the docs say.
+//! Every command in the docs is executed, and prints what the docs say; tables and links are checked.
 //!
 //! In ```console blocks a line `$ command` is run by the shell; the lines after it are its standard
 //! output, where a line `...` stands for any number of lines. With DEPTHPLANES_GOLDEN=update the
@@ -7,7 +7,11 @@
 
 mod support;
 
+use depthplanes_io::encoding::ENCODINGS;
+use depthplanes_io::formats::FORMATS;
+use depthplanes_io::outputs::OUTPUTS;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use support::{Bench, Ran};
 
 /// One command and the lines that the docs show below it.
@@ -51,9 +55,20 @@ fn shell(bench: &Bench, command: &str) -> Ran {
     Ran::from(bench.command_of("sh").env("PATH", path.unwrap()).args(["-c", command]).output().unwrap())
 }
 
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Held by a test that may write documents.
+static DOCUMENTS: Mutex<()> = Mutex::new(());
+
+/// Whether the docs are to be written anew.
+fn update() -> bool {
+    std::env::var("DEPTHPLANES_GOLDEN").is_ok_and(|value| value == "update")
+}
+
 fn run_document(path: &Path) {
     let text = std::fs::read_to_string(path).unwrap();
-    let update = std::env::var("DEPTHPLANES_GOLDEN").is_ok_and(|value| value == "update");
     let bench = Bench::new(&format!("docs_{}", path.file_stem().unwrap().display()));
     let mut lines: Vec<String> = text.lines().map(String::from).collect();
     let mut outputs = Vec::new();
@@ -64,13 +79,13 @@ fn run_document(path: &Path) {
         let shown = if fails { &ran.err } else { &ran.out };
         let actual: Vec<String> = shown.lines().map(String::from).collect();
         let fixed = !step.expected.iter().any(|line| line == "...");
-        if update && fixed {
+        if update() && fixed {
             outputs.push((step.lines, actual));
         } else {
             assert!(matches(&step.expected, &actual), "{}: {}\nprints\n{shown}", path.display(), step.command);
         }
     }
-    if update {
+    if update() {
         for (range, output) in outputs.into_iter().rev() {
             lines.splice(range, output);
         }
@@ -80,9 +95,57 @@ fn run_document(path: &Path) {
 
 #[test]
 fn the_commands_of_the_docs_print_what_the_docs_say() {
-    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let documents = [root.join("docs/cli.md"), root.join("README.md")];
-    for document in documents.iter().filter(|document| document.exists()) {
-        run_document(document);
+    let _alone = DOCUMENTS.lock();
+    for document in ["docs/cli.md", "docs/ngaf.md", "README.md"] {
+        run_document(&root().join(document));
     }
+}
+
+#[test]
+fn the_tables_of_the_readme_are_the_libraries_tables() {
+    let _alone = DOCUMENTS.lock();
+    let formats = FORMATS.iter().filter(|format| format.name != "exr").map(|format| {
+        let names: Vec<String> = format.extensions.iter().map(|extension| format!("`.{extension}`")).collect();
+        format!("| {} | {} | {} |", format.name, names.join(" "), format.about)
+    });
+    let encodings =
+        ENCODINGS.iter().map(|encoding| format!("| `{}` | {} | {} |", encoding.name, encoding.unit, encoding.about));
+    let outputs =
+        OUTPUTS.iter().map(|output| format!("| `--{}` | {} | {} |", output.name, output.extensions(), output.about));
+    let path = root().join("README.md");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let filled = fill(&text, "formats", "| format | names | about |", formats);
+    let filled = fill(&filled, "encodings", "| encoding | unit | about |", encodings);
+    let filled = fill(&filled, "outputs", "| flag | file | about |", outputs);
+    if update() {
+        std::fs::write(path, &filled).unwrap();
+    } else {
+        assert!(text == filled, "a table of README.md is not that of the library; run `make golden`");
+    }
+}
+
+/// The text with a table of three columns between the markers of that name.
+fn fill(text: &str, marker: &str, heading: &str, rows: impl Iterator<Item = String>) -> String {
+    let (open, close) = (format!("<!-- {marker} -->\n"), format!("<!-- /{marker} -->"));
+    let (before, rest) = text.split_once(&open).unwrap_or_else(|| panic!("no {open}"));
+    let (_, after) = rest.split_once(&close).unwrap_or_else(|| panic!("no {close}"));
+    let rows: Vec<String> = rows.collect();
+    format!("{before}{open}{heading}\n|---|---|---|\n{}\n{close}{after}", rows.join("\n"))
+}
+
+#[test]
+fn links_of_the_docs_lead_to_files() {
+    let mut links = 0;
+    for document in ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/cli.md", "docs/ngaf.md"] {
+        let path = root().join(document);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let targets =
+            text.split("](").chain(text.split("src=\"")).filter_map(|rest| rest.split([')', '"', '#']).next());
+        for target in targets.filter(|target| target.ends_with(".md") || target.ends_with(".png")) {
+            let made_later = target == "docs/paper-tables.md"; // by `make tables`
+            assert!(made_later || path.with_file_name(target).exists(), "{document}: {target} is not there");
+            links += 1;
+        }
+    }
+    assert!(links > 15, "{links} links");
 }

@@ -52,6 +52,7 @@ fn serve<T: Pixel>(job: &Job, pixels: Vec<T>) -> Result<(), Box<dyn std::error::
     let view = DepthView::new(&pixels, job.width, job.height)?;
     let rule = LinkRule::new(view.validity(), job.theta)?;
     let mut grouper = Grouper::with_kernel(job.kernel);
+    grouper.leave_out_singles(job.min >= 1);
     let mut selection = Selection::default();
     let mut labels = Vec::new();
     let mut copy = pixels.clone();

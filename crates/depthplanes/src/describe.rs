@@ -7,8 +7,8 @@
 use crate::camera::{Intrinsics, Measure, Sensor};
 use crate::detection::{MapFit, MetricPlane, PixelBox, Plane, share};
 use crate::fit::{self, AffineFit, Moments, RunSums};
-use crate::group::Run;
 use crate::map::{DepthView, Pixel};
+use crate::select::LabelledRun;
 
 /// What the first pass knows of a plane.
 #[derive(Clone, Copy, Debug)]
@@ -57,13 +57,7 @@ struct Distances {
 
 impl Describer {
     /// First pass. Labels are 1, 2, .. in `runs`, and none is left out.
-    pub fn tally<T: Pixel>(
-        &mut self,
-        map: &DepthView<'_, T>,
-        runs: impl Iterator<Item = (Run, u16)>,
-        margin: u32,
-        sensor: &Sensor,
-    ) {
+    pub fn tally<T: Pixel>(&mut self, map: &DepthView<'_, T>, runs: &[LabelledRun], margin: u32, sensor: &Sensor) {
         self.tallies.clear();
         self.tallies.reserve(crate::select::MAX_PLANES.min(map.area()));
         let inner = Margin { margin, width: map.width() as u32, height: map.height() as u32 };
@@ -72,19 +66,19 @@ impl Describer {
             (Some(_), Measure::Depth { metres }) => Some(move |value: T| 1.0 / (metres * value.into())),
             _ => None,
         };
-        for (run, label) in runs {
-            let values = &map.row(run.v as usize)[run.u_first as usize..=run.u_last as usize];
-            let at = usize::from(label) - 1;
+        for run in runs {
+            let values = run.of(map);
+            let at = usize::from(run.label) - 1;
             if at >= self.tallies.len() {
                 self.tallies.resize_with(at + 1, Tally::none);
             }
             let tally = &mut self.tallies[at];
             if tally.pixel_count == 0 {
-                tally.begin(&run, values[0].into(), inverse.map_or(0.0, |inverse| inverse(values[0])));
+                tally.begin(run, values[0].into(), inverse.map_or(0.0, |inverse| inverse(values[0])));
             }
             tally.pixel_count += values.len();
-            tally.inner_pixels += inner.pixels(&run);
-            tally.bounding_box.include(&run);
+            tally.inner_pixels += inner.pixels(run);
+            tally.bounding_box.include(run);
             let (u, v) = (f64::from(run.u_first) - tally.origin[0], f64::from(run.v) - tally.origin[1]);
             tally.value.add(u, v, values, |value| value.into());
             if let Some(inverse) = inverse {
@@ -108,7 +102,7 @@ impl Describer {
     pub fn describe<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
-        runs: impl Iterator<Item = (Run, u16)>,
+        runs: &[LabelledRun],
         sensor: &Sensor,
         valid_pixels: usize,
         planes: &mut Vec<Plane>,
@@ -116,8 +110,14 @@ impl Describer {
         planes.clear();
         planes.reserve(self.tallies.capacity());
         self.distances.clear();
-        if let Some(camera) = sensor.intrinsics.filter(|_| sensor.measure != Measure::Disparity) {
-            self.measure_distances(map, runs, &camera, sensor.measure);
+        match (sensor.intrinsics, sensor.measure) {
+            (Some(camera), Measure::Depth { metres }) => {
+                self.measure_distances(map, runs, &camera, |value| metres * value.into());
+            }
+            (Some(camera), Measure::InverseDepth { slope, offset }) => {
+                self.measure_distances(map, runs, &camera, |value| (slope * value.into() + offset).recip());
+            }
+            _ => (),
         }
         planes.extend((1..).zip(&self.tallies).map(|(label, tally)| {
             let fit =
@@ -138,17 +138,16 @@ impl Describer {
     fn measure_distances<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
-        runs: impl Iterator<Item = (Run, u16)>,
+        runs: &[LabelledRun],
         camera: &Intrinsics,
-        measure: Measure,
+        depth_m: impl Fn(T) -> f64,
     ) {
         self.distances.reserve(self.tallies.capacity());
         self.distances.resize(self.tallies.len(), Distances::default());
-        for (run, label) in runs {
-            let at = usize::from(label) - 1;
+        for run in runs {
+            let at = usize::from(run.label) - 1;
             if let Some(plane) = &self.tallies[at].inverse_depth {
-                let values = &map.row(run.v as usize)[run.u_first as usize..=run.u_last as usize];
-                self.distances[at].add(&run, values, plane, camera, measure);
+                self.distances[at].add(run, run.of(map), plane, camera, &depth_m);
             }
         }
     }
@@ -170,7 +169,7 @@ impl Tally {
         }
     }
 
-    fn begin(&mut self, run: &Run, value: f64, inverse: f64) {
+    fn begin(&mut self, run: &LabelledRun, value: f64, inverse: f64) {
         self.origin = [run.u_first.into(), run.v.into()];
         self.value.first = value;
         self.inverse.first = inverse;
@@ -201,7 +200,7 @@ impl Quantity {
 }
 
 impl PixelBox {
-    fn include(&mut self, run: &Run) {
+    fn include(&mut self, run: &LabelledRun) {
         self.u_min = self.u_min.min(run.u_first);
         self.u_max = self.u_max.max(run.u_last);
         self.v_min = self.v_min.min(run.v);
@@ -217,7 +216,7 @@ struct Margin {
 }
 
 impl Margin {
-    fn pixels(&self, run: &Run) -> usize {
+    fn pixels(&self, run: &LabelledRun) -> usize {
         let rows = self.margin..self.height.saturating_sub(self.margin);
         if !rows.contains(&run.v) {
             return 0;
@@ -228,22 +227,25 @@ impl Margin {
 }
 
 impl Distances {
-    fn add<T: Pixel>(&mut self, run: &Run, values: &[T], plane: &AffineFit, camera: &Intrinsics, measure: Measure) {
-        let v = f64::from(run.v);
-        let (mut depth, mut depth_k) = (0.0, 0.0);
-        for (k, &value) in values.iter().enumerate() {
-            let u = f64::from(run.u_first) + k as f64;
-            let Some(q) = measure.inverse_depth(value.into()) else {
-                self.behind_infinity = true;
-                return;
-            };
-            let z = q.recip();
-            let relative = z * (q - plane.at(u, v));
-            self.squares += relative * relative;
-            depth += z;
-            depth_k += z * k as f64;
-        }
-        let ray = camera.ray(run.u_first.into(), v);
+    fn add<T: Pixel>(
+        &mut self,
+        run: &LabelledRun,
+        values: &[T],
+        plane: &AffineFit,
+        camera: &Intrinsics,
+        depth_m: impl Fn(T) -> f64,
+    ) {
+        let (u, v) = (f64::from(run.u_first), f64::from(run.v));
+        let (first, slope) = (plane.at(u, v), plane.abc[0]);
+        let [squares, depth, depth_k, behind] = fit::sum_terms(values, |k, value| {
+            let z = depth_m(value);
+            let relative = 1.0 - z * (first + slope * k); // z (q - q of the plane)
+            let behind = if z > 0.0 && z < f64::INFINITY { 0.0 } else { 1.0 };
+            [relative * relative, z, z * k, behind]
+        });
+        self.squares += squares;
+        self.behind_infinity |= behind > 0.0;
+        let ray = camera.ray(u, v);
         self.point[0] += ray[0] * depth + depth_k / camera.fx;
         self.point[1] += ray[1] * depth;
         self.point[2] += depth;

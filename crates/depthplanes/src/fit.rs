@@ -116,36 +116,47 @@ pub struct RunSums {
     pub qq: f64,
 }
 
-/// Lanes that sums are spread over, always the same, so that every processor rounds alike.
-const LANES: usize = 8;
-
 impl RunSums {
     /// Sums of a run's values.
     #[inline]
     pub fn of<T: Copy>(values: &[T], q: impl Fn(T) -> f64) -> Self {
-        let mut lanes = [[0.0f64; LANES]; 3];
-        let mut k = std::array::from_fn(|lane| lane as f64);
-        let blocks = values.chunks_exact(LANES);
-        let rest = blocks.remainder();
-        for block in blocks {
-            Self::add(&mut lanes, &mut k, std::array::from_fn::<f64, LANES, _>(|lane| q(block[lane])));
-        }
-        if !rest.is_empty() {
-            Self::add(&mut lanes, &mut k, std::array::from_fn(|lane| rest.get(lane).map_or(0.0, |&value| q(value))));
-        }
-        let [sum, sum_k, squares] = lanes.map(|lane| lane.iter().sum());
-        RunSums { n: values.len() as f64, q: sum, kq: sum_k, qq: squares }
+        let [q, kq, qq] = sum_terms(values, |k, value| {
+            let q = q(value);
+            [q, k * q, q * q]
+        });
+        RunSums { n: values.len() as f64, q, kq, qq }
     }
+}
 
-    #[inline(always)]
-    fn add(lanes: &mut [[f64; LANES]; 3], k: &mut [f64; LANES], q: [f64; LANES]) {
-        for lane in 0..LANES {
-            lanes[0][lane] += q[lane];
-            lanes[1][lane] += k[lane] * q[lane];
-            lanes[2][lane] += q[lane] * q[lane];
-            k[lane] += LANES as f64;
+/// Lanes that the sums of long runs are spread over, always the same, so that every processor rounds
+/// alike.
+const LANES: usize = 8;
+
+/// Sums of some terms over a run's values, each with its number k = 0, 1 ..
+#[inline(always)]
+pub(crate) fn sum_terms<T: Copy, const N: usize>(values: &[T], terms: impl Fn(f64, T) -> [f64; N]) -> [f64; N] {
+    let mut sums = [0.0; N];
+    let blocks = values.chunks_exact(LANES);
+    let rest = blocks.remainder();
+    if values.len() >= LANES {
+        let mut lanes = [[0.0; LANES]; N];
+        let mut first = 0.0;
+        for block in blocks {
+            for lane in 0..LANES {
+                let terms = terms(first + lane as f64, block[lane]);
+                (0..N).for_each(|n| lanes[n][lane] += terms[n]);
+            }
+            first += LANES as f64;
         }
+        sums = lanes.map(|lanes| lanes.iter().sum());
     }
+    let mut k = (values.len() - rest.len()) as f64;
+    for &value in rest {
+        let terms = terms(k, value);
+        (0..N).for_each(|n| sums[n] += terms[n]);
+        k += 1.0;
+    }
+    sums
 }
 
 /// `q = a u + b v + c`, least squares.

@@ -24,3 +24,8 @@ pub use detector::Detector;
 pub use error::{Error, Result};
 pub use map::{AnyView, DepthView, Pixel};
 pub use methods::Ngaf;
+
+/// The README's example is a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

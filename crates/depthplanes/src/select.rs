@@ -5,6 +5,7 @@
 
 use crate::error::{Error, Result};
 use crate::group::{Groups, Run, reserve_to};
+use crate::map::{DepthView, Pixel};
 
 /// Most planes that 16-bit labels can name.
 pub const MAX_PLANES: usize = u16::MAX as usize;
@@ -21,12 +22,34 @@ pub struct Kept {
     pub pixel_count: u32,
 }
 
+/// A stretch of one row that belongs to a plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LabelledRun {
+    /// Row.
+    pub v: u32,
+    /// First column.
+    pub u_first: u32,
+    /// Last column, inclusive.
+    pub u_last: u32,
+    /// The plane's label, 1 and up.
+    pub label: u16,
+}
+
+impl LabelledRun {
+    /// Its pixels in the map.
+    #[inline(always)]
+    pub(crate) fn of<'a, T: Pixel>(&self, map: &DepthView<'a, T>) -> &'a [T] {
+        &map.row(self.v as usize)[self.u_first as usize..=self.u_last as usize]
+    }
+}
+
 /// The groups that are planes; reuses its memory from map to map.
 #[derive(Debug, Default)]
 pub struct Selection {
     kept: Vec<Kept>,
     label_of_group: Vec<u16>,
     label_of_provisional: Vec<u16>,
+    runs: Vec<LabelledRun>,
 }
 
 impl Selection {
@@ -83,8 +106,16 @@ impl Selection {
         groups.paint(&self.label_of_group, &mut self.label_of_provisional, labels);
     }
 
-    /// The runs of the kept groups in raster order, each with its plane's label, 1 and up.
-    pub fn runs<'a>(&'a self, groups: &'a Groups) -> impl Iterator<Item = (Run, u16)> + 'a {
-        groups.runs().map(|run| (run, self.label_of_group[run.group as usize])).filter(|&(_, label)| label > 0)
+    /// The runs of the kept groups in raster order, each with its plane's label.
+    pub fn runs(&mut self, groups: &Groups) -> &[LabelledRun] {
+        let Selection { runs, label_of_group, .. } = self;
+        reserve_to(runs, groups.width() * groups.height());
+        groups.each_run(|Run { v, u_first, u_last, group }| {
+            let label = label_of_group[group as usize];
+            if label > 0 {
+                runs.push(LabelledRun { v, u_first, u_last, label });
+            }
+        });
+        runs
     }
 }

@@ -15,6 +15,7 @@ fn labels<T: Pixel>(
     threads: usize,
 ) -> Vec<u16> {
     let mut grouper = Grouper::with_kernel(kernel);
+    grouper.leave_out_singles(min >= 1);
     let mut selection = Selection::default();
     let rule = LinkRule::new(view.validity(), theta).unwrap();
     let groups = grouper.group(view, &rule, threads);

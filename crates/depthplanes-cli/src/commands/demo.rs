@@ -4,6 +4,7 @@ use super::make_folder;
 use crate::failure::Outcome;
 use crate::run::{Recipe, Runner};
 use crate::{load, show};
+use depthplanes::Intrinsics;
 use depthplanes::methods::METHODS;
 use depthplanes_io::outputs::{self, OUTPUTS, Output, Report};
 use depthplanes_io::{Frame, Pixels};
@@ -54,5 +55,9 @@ fn tell(report: &Report<'_>, depth: &Path, files: &[(&Output, PathBuf)], out: &m
     let picture = overlay.map(|(_, path)| path.display().to_string()).unwrap_or_default();
     writeln!(out, "\nLook at {picture}. The same again from the file:")?;
     let given: Vec<String> = PARAMETERS.iter().map(|(name, value)| format!("--{name} {value}")).collect();
-    Ok(writeln!(out, "  depthplanes detect {} --encoding millimetre {}", depth.display(), given.join(" "))?)
+    write!(out, "  depthplanes detect {} --encoding millimetre {}", depth.display(), given.join(" "))?;
+    if let Some(Intrinsics { fx, fy, cx, cy }) = report.frame.sensor.intrinsics {
+        write!(out, " --intrinsics {fx},{fy},{cx},{cy}")?;
+    }
+    Ok(writeln!(out)?)
 }

@@ -40,8 +40,9 @@ fn make_folder(folder: &Path) -> Outcome {
 
 /// Refuses a file where a folder is needed.
 fn refuse_file(folder: &Path) -> Outcome {
-    match folder.is_dir() || !folder.exists() {
-        true => Ok(()),
-        false => Err(Failure::request(format!("{}: --out-dir needs a folder, this is a file", folder.display()))),
+    // In this order, since another job may be making the folder right now.
+    if folder.exists() && !folder.is_dir() {
+        return Err(Failure::request(format!("{}: --out-dir needs a folder, this is a file", folder.display())));
     }
+    Ok(())
 }

@@ -12,6 +12,7 @@
 
 mod forest;
 mod kernels;
+mod labels;
 mod strip;
 
 use crate::error::{Error, Result};
@@ -99,6 +100,12 @@ impl Grouper {
         Grouper { groups: Groups::new(kernel) }
     }
 
+    /// Whether groups of a single pixel may be left out, which saves time on noisy maps. Some are then
+    /// neither counted nor listed; they remain valid pixels.
+    pub fn leave_out_singles(&mut self, yes: bool) {
+        self.groups.leaves_out_singles = yes;
+    }
+
     /// Groups one map on `threads` threads (0 counts as 1; one without the feature `parallel`).
     ///
     /// ```
@@ -135,6 +142,7 @@ const STRIP_PIXELS: usize = 1 << 19;
 #[derive(Debug)]
 pub struct Groups {
     kernel: &'static Kernel,
+    leaves_out_singles: bool,
     threads: usize,
     width: usize,
     height: usize,
@@ -148,7 +156,7 @@ pub struct Groups {
 impl Groups {
     fn new(kernel: &'static Kernel) -> Self {
         let (strips, group_of_label, sizes) = Default::default();
-        Groups { kernel, threads: 1, width: 0, height: 0, strips, group_of_label, sizes }
+        Groups { kernel, leaves_out_singles: false, threads: 1, width: 0, height: 0, strips, group_of_label, sizes }
     }
 
     fn prepare<T: Pixel>(&mut self, map: &DepthView<'_, T>, threads: usize) {
@@ -156,6 +164,7 @@ impl Groups {
         let height = (STRIP_PIXELS / self.width).clamp(1, self.height);
         self.strips.resize_with(self.height.div_ceil(height), Strip::default);
         for (strip, first) in self.strips.iter_mut().zip((0..).step_by(height)) {
+            strip.leaves_out_singles = self.leaves_out_singles;
             strip.prepare(self.width, first..(first + height).min(self.height));
         }
         reserve_to(&mut self.group_of_label, map.area());
@@ -176,18 +185,23 @@ impl Groups {
 
     /// Groups from the strips' labels, united along the borders.
     fn join_strips<T: Pixel>(&mut self, map: &DepthView<'_, T>, rule: &LinkRule<T>) {
-        let forest = &mut self.group_of_label;
-        for strip in &mut self.strips {
-            strip.first_label = forest.len();
-            let offset = forest.len() as u32;
-            forest.extend(strip.forest.iter().map(|parent| parent + offset));
+        let (forest, sizes) = (&mut self.group_of_label, &mut self.sizes);
+        if let [only] = &mut self.strips[..] {
+            std::mem::swap(forest, &mut only.forest);
+            std::mem::swap(sizes, &mut only.sizes);
+        } else {
+            for strip in &mut self.strips {
+                strip.first_label = forest.len();
+                let offset = forest.len() as u32;
+                forest.extend(strip.forest.iter().map(|parent| parent + offset));
+                sizes.extend_from_slice(&strip.sizes);
+            }
         }
         for k in 1..self.strips.len() {
             let (above, below) = self.strips.split_at_mut(k);
             self.kernel.stitch(map, rule, &above[k - 1], &mut below[0], forest);
         }
-        let sizes = self.strips.iter().flat_map(|strip| strip.sizes.iter().copied());
-        forest::flatten(forest, sizes, &mut self.sizes);
+        forest::flatten(forest, sizes);
     }
 
     /// Columns of the map.
@@ -200,12 +214,17 @@ impl Groups {
         self.height
     }
 
-    /// Valid pixels of the map, which is the sum of all groups' sizes.
+    /// Valid pixels of the map, which is the sum of all groups' sizes and the singles left out.
     pub fn valid_pixels(&self) -> usize {
         self.strips.iter().map(|strip| strip.valid_pixels).sum()
     }
 
-    /// How many groups there are.
+    /// How many groups of a single pixel were left out ([`Grouper::leave_out_singles`]).
+    pub fn singles_left_out(&self) -> usize {
+        self.strips.iter().map(|strip| strip.singles_left_out).sum()
+    }
+
+    /// How many groups there are, without the singles left out.
     pub fn count(&self) -> usize {
         self.sizes.len()
     }
@@ -215,16 +234,14 @@ impl Groups {
         self.strips.iter().map(Strip::run_count).sum()
     }
 
-    /// All runs in raster order.
-    pub fn runs(&self) -> impl Iterator<Item = Run> + '_ {
-        self.strips.iter().flat_map(move |strip| {
+    /// Calls `visit` for each run in raster order.
+    pub fn each_run(&self, mut visit: impl FnMut(Run)) {
+        for strip in &self.strips {
             let groups = &self.group_of_label[strip.first_label..];
-            let columns = (0..strip.rows.len()).flat_map(move |row| strip.columns(row).map(move |run| (row, run)));
-            columns.zip(strip.labels()).map(move |((row, (u_first, u_last)), &label)| {
-                let group = groups[label as usize];
-                Run { v: (strip.rows.start + row) as u32, u_first, u_last, group }
-            })
-        })
+            strip.each_run(|v, u_first, u_last, label| {
+                visit(Run { v: v as u32, u_first, u_last, group: groups[label as usize] });
+            });
+        }
     }
 
     /// The pixels of each group, in raster order of the groups' first pixels.

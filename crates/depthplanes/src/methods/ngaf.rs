@@ -100,7 +100,7 @@ const PARAMS: &[Param] = &[
     },
 ];
 
-/// Parameters of `ngaf`; the defaults are the paper's.
+/// Parameters of the method `ngaf`; the defaults are the paper's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ngaf {
     /// Largest difference between neighbours of one group, map units, 0 and up (section 3c).
@@ -157,7 +157,9 @@ impl TryFrom<Ngaf> for Box<dyn Method> {
 
     fn try_from(params: Ngaf) -> Result<Self> {
         INFO.check(&params.values())?;
-        Ok(Box::new(Runner { params, ..Runner::default() }))
+        let mut runner = Runner { params, ..Runner::default() };
+        runner.grouper.leave_out_singles(params.min >= 1);
+        Ok(Box::new(runner))
     }
 }
 
@@ -195,13 +197,15 @@ impl Runner {
         job.done("group");
         selection.select(groups, params.min)?; // section 3d
         job.done("select");
-        describer.tally(&map, selection.runs(groups), params.margin, &job.sensor);
+        let mut runs = selection.runs(groups);
+        describer.tally(&map, runs, params.margin, &job.sensor);
         if params.has_conditions() {
             selection.retain(groups, |index| params.accepts(&describer.tallies()[index]));
             describer.retain(|tally| params.accepts(tally));
+            runs = selection.runs(groups);
         }
         let valid = groups.valid_pixels();
-        describer.describe(&map, selection.runs(groups), &job.sensor, valid, &mut out.planes);
+        describer.describe(&map, runs, &job.sensor, valid, &mut out.planes);
         job.done("fit");
         selection.paint(groups, &mut out.labels);
         (out.width, out.height) = (map.width(), map.height());

@@ -6,18 +6,23 @@ use std::arch::x86_64::*;
 
 pub(super) struct Avx512;
 
-kernel!("avx512", Avx512, "avx512f,avx512bw,avx512vl,avx512vbmi2,avx512bitalg,avx512vpopcntdq,bmi1,bmi2,popcnt,lzcnt", || {
-    is_x86_feature_detected!("avx512f")
-        && is_x86_feature_detected!("avx512bw")
-        && is_x86_feature_detected!("avx512vl")
-        && is_x86_feature_detected!("avx512vbmi2")
-        && is_x86_feature_detected!("avx512bitalg")
-        && is_x86_feature_detected!("avx512vpopcntdq")
-        && is_x86_feature_detected!("bmi1")
-        && is_x86_feature_detected!("bmi2")
-        && is_x86_feature_detected!("popcnt")
-        && is_x86_feature_detected!("lzcnt")
-});
+kernel!(
+    "avx512",
+    Avx512,
+    "avx512f,avx512bw,avx512vl,avx512vbmi2,avx512bitalg,avx512vpopcntdq,bmi1,bmi2,popcnt,lzcnt",
+    || {
+        is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512bw")
+            && is_x86_feature_detected!("avx512vl")
+            && is_x86_feature_detected!("avx512vbmi2")
+            && is_x86_feature_detected!("avx512bitalg")
+            && is_x86_feature_detected!("avx512vpopcntdq")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2")
+            && is_x86_feature_detected!("popcnt")
+            && is_x86_feature_detected!("lzcnt")
+    }
+);
 
 /// One pixel type: its lanes, and the masks of one vector that say which lanes are valid and which
 /// are within theta of each other.
@@ -115,14 +120,13 @@ impl Isa for Avx512 {
     #[inline(always)]
     fn dense_labels(
         links: &Links<'_>,
-        starts_above: &[u64],
         above: &[u32],
         inherited: &mut [u32],
         labels: &mut [u32],
         new_label: u32,
     ) -> u32 {
         // SAFETY: as above.
-        unsafe { dense_labels(links, starts_above, above, inherited, labels, new_label) }
+        unsafe { dense_labels(links, above, inherited, labels, new_label) }
     }
     #[inline(always)]
     fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
@@ -205,14 +209,8 @@ fn positions(mask: &[u64], count: usize, list: &mut Vec<u16>) {
 /// expands the list to the runs that have one, and new labels to the others.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vpopcntdq,bmi1,bmi2,popcnt")]
-fn dense_labels(
-    links: &Links<'_>,
-    starts_above: &[u64],
-    above: &[u32],
-    inherited: &mut [u32],
-    labels: &mut [u32],
-    new_label: u32,
-) -> u32 {
+fn dense_labels(links: &Links<'_>, above: &[u32], inherited: &mut [u32], labels: &mut [u32], new_label: u32) -> u32 {
+    let starts_above = links.starts_above;
     let ones = |words: &[u64]| words.iter().map(|word| word.count_ones() as usize).sum::<usize>();
     assert!(above.len() > ones(starts_above) && inherited.len() >= ones(links.contacts) + SLACK);
     assert!(labels.len() >= ones(links.ends) + SLACK && links.ends.len() == starts_above.len());
@@ -234,7 +232,10 @@ fn dense_labels(
             unsafe {
                 let table = _mm512_maskz_loadu_epi32(present, above.as_ptr().add(table).cast());
                 let pixels = _mm512_permutexvar_epi32(index, table);
-                _mm512_storeu_si512(inherited.as_mut_ptr().add(listed).cast(), _mm512_maskz_compress_epi32(contacts, pixels));
+                _mm512_storeu_si512(
+                    inherited.as_mut_ptr().add(listed).cast(),
+                    _mm512_maskz_compress_epi32(contacts, pixels),
+                );
             }
             begun += starts.count_ones() as usize;
             listed += contacts.count_ones() as usize;
@@ -270,8 +271,7 @@ fn dense_labels(
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512bitalg,popcnt")]
 fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
-    let runs: usize = starts.iter().map(|word| word.count_ones() as usize).sum();
-    assert!(labels.len() >= runs + SLACK && valid.len() == starts.len());
+    assert!(labels.len() >= starts.len() * 64 + SLACK && valid.len() == starts.len());
     // SAFETY: all three are 64 bytes.
     let [up_to, own_half, lower_half] =
         unsafe { [&UP_TO, &OWN_HALF, &LOWER_HALF].map(|constant| _mm512_loadu_si512(constant.as_ptr().cast())) };
@@ -287,7 +287,7 @@ fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
             _mm512_popcnt_epi16(_mm512_shuffle_epi8(bits, lower_half)),
         );
         let within = u32::MAX >> (32 - (row.len() - at).min(32));
-        // SAFETY: `table + 32 <= runs + SLACK`, checked above; the masked store writes only pixels of the row.
+        // SAFETY: `table` is at most the pixels before the block, so 32 more are there, checked above; the masked store writes only pixels of the row.
         unsafe {
             let labels = _mm512_loadu_si512(labels.as_ptr().add(table).cast());
             let painted = _mm512_maskz_permutexvar_epi16(valid, index, labels);

@@ -13,7 +13,8 @@ mod portable;
 mod words;
 
 use super::LinkRule;
-use super::strip::{Links, RowMasks, Strip};
+use super::labels::Links;
+use super::strip::{RowMasks, Strip};
 use crate::map::{DepthView, Pixel};
 use std::fmt;
 #[cfg(target_arch = "x86_64")]
@@ -43,7 +44,6 @@ pub trait Isa {
     /// spare. `inherited` is memory for a label per pixel.
     fn dense_labels(
         _links: &Links<'_>,
-        _starts_above: &[u64],
         _above: &[u32],
         _inherited: &mut [u32],
         _labels: &mut [u32],
@@ -54,7 +54,8 @@ pub trait Isa {
 
     /// Writes labels of part of a row: 0 where not valid, else the label of the pixel's run.
     /// `labels[i]` belongs to the i-th run that starts in it, `labels[0]` to one that reaches into it;
-    /// there is [`SLACK`] to spare.
+    /// there is room for a
+    /// label for each pixel and [`SLACK`] to spare.
     fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]);
 }
 

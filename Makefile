@@ -1,0 +1,100 @@
+# People and CI call these targets and nothing else. `make help` lists them.
+# Everything that is made goes into the checkout: target/, .venv/, out/, fuzz/.
+
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+MAKEFLAGS += --no-print-directory
+export PATH := $(PATH):$(HOME)/.cargo/bin
+
+CARGO ?= cargo
+PYTHON ?= python3
+FUZZ_SECONDS ?= 30
+ROUNDS ?= 31
+# Name of this machine's folder of benchmark records.
+MACHINE ?= $(shell scripts/machine)
+
+VENV := .venv/ready
+PY := .venv/bin/python
+CARGO_FUZZ := target/tools/bin/cargo-fuzz
+
+say = @printf '\n== %s\n' '$(1)'
+
+.NOTPARALLEL:
+.PHONY: help demo test lint fmt format clippy rust-tests rustdoc oracles bench tables golden fuzz clean
+
+help: ## List the targets
+	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
+
+demo: ## Build the program and run a made-up scene through it into out/demo
+	$(CARGO) build --release --package depthplanes-cli
+	"$${CARGO_TARGET_DIR:-target}"/release/depthplanes demo --out-dir out/demo
+
+test: lint rust-tests rustdoc oracles ## Run every check: formatting, lints, all tests, documentation, Python oracles
+	$(call say,all checks passed)
+
+lint: format clippy ## Check formatting and lints, change nothing
+
+format:
+	$(call say,formatting)
+	@if scripts/component rustfmt; then $(CARGO) fmt --all --check || { \
+		echo 'error: the code is not formatted; run `make fmt`' >&2; exit 1; }; fi
+
+clippy:
+	$(call say,lints)
+	@if scripts/component clippy; then \
+		$(CARGO) clippy --workspace --all-targets -- -D warnings; \
+		$(CARGO) clippy --package depthplanes --no-default-features --all-targets -- -D warnings; \
+		$(CARGO) clippy --package depthplanes-io --features exr --all-targets -- -D warnings; fi
+
+rust-tests:
+	$(call say,tests)
+	$(CARGO) test --workspace
+	$(call say,tests of the library without threads)
+	$(CARGO) test --package depthplanes --no-default-features
+	$(call say,tests of the readers with OpenEXR)
+	$(CARGO) test --package depthplanes-io --features exr
+
+# The program has the library's name, so its own page is left out.
+rustdoc:
+	$(call say,documentation)
+	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --no-deps --package depthplanes --package depthplanes-io --features depthplanes-io/exr
+
+oracles: $(VENV)
+	$(call say,Python oracles)
+	$(PY) -m pytest tests/oracles
+
+bench: $(VENV) ## Measure against cc3d and OpenCV; writes benchmarks/record/MACHINE/DATE.csv
+	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes --examples
+	$(PY) benchmarks/run.py --rounds $(ROUNDS) --record "benchmarks/record/$(MACHINE)/$$(date +%F).csv"
+
+tables: $(VENV) ## Write docs/paper-tables.md: the paper's tables on the same maps
+	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes-cli
+	$(PY) benchmarks/paper_tables.py
+
+golden: ## Write golden files, the outputs shown in the docs and their pictures anew; look at the difference
+	DEPTHPLANES_GOLDEN=update $(CARGO) test --workspace
+	git status --short
+
+fuzz: $(CARGO_FUZZ) ## Fuzz every reader for FUZZ_SECONDS each (30)
+	@for target in fuzz/fuzz_targets/*.rs; do \
+		target=$$(basename "$$target" .rs); printf '\n== fuzzing %s for %s s\n' "$$target" $(FUZZ_SECONDS); \
+		RUSTC_BOOTSTRAP=1 PATH="$(CURDIR)/target/tools/bin:$$PATH" $(CARGO) fuzz run "$$target" -- \
+			-max_total_time=$(FUZZ_SECONDS) -rss_limit_mb=1024 -print_final_stats=1; done
+
+fmt: ## Format the code
+	@if scripts/component rustfmt; then $(CARGO) fmt --all; else exit 1; fi
+
+clean: ## Remove everything that was made
+	rm -rf target .venv out fuzz/target
+	find . -name __pycache__ -o -name .pytest_cache | xargs rm -rf
+
+# Anew when the packages change, or when an earlier attempt did not finish.
+$(VENV): tests/oracles/requirements.txt
+	$(call say,Python packages into .venv)
+	@scripts/venv '$(PYTHON)' $<
+	@touch $@
+
+$(CARGO_FUZZ):
+	@command -v c++ >/dev/null || { echo 'error: fuzzing needs a C++ compiler (Debian: apt-get install g++)' >&2; exit 1; }
+	CARGO_TARGET_DIR=target/tools/build $(CARGO) install cargo-fuzz --locked --root target/tools

@@ -1,0 +1,73 @@
+//! The pictures of the docs are what the program and the library draw; with DEPTHPLANES_GOLDEN=update
+//! they are drawn anew.
+
+mod support;
+
+use depthplanes::enhance::Enhancer;
+use depthplanes::methods::{self, MethodInfo};
+use depthplanes::scene::{ScenePixels, Spec};
+use depthplanes::{DepthView, Detection, Detector};
+use depthplanes_io::outputs::{OUTPUTS, Report};
+use depthplanes_io::{Frame, Pixels};
+use std::path::{Path, PathBuf};
+use support::Bench;
+
+fn check(name: &str, drawn: &[u8]) {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../docs/images").join(name);
+    if std::env::var_os("DEPTHPLANES_GOLDEN").is_some_and(|value| value == "update") {
+        std::fs::write(&path, drawn).unwrap();
+    }
+    let kept = std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    assert!(kept == drawn, "docs/images/{name} is not what is drawn now; if that is meant, run `make golden`");
+    assert!(drawn.len() < 300_000, "{name} has {} bytes", drawn.len());
+}
+
+#[test]
+fn the_room_of_the_readme_is_the_demos() {
+    let bench = Bench::new("picture_of_the_room");
+    bench.run(&["demo", "--out-dir", "demo"]).ok();
+    check("room.png", &bench.read("demo/overlay.png"));
+    // No group is that large, so that the grey map remains.
+    bench.run(&["detect", "demo/depth.png", "--min", "1000000", "--overlay", "depth.png"]).ok();
+    check("room-depth.png", &bench.read("depth.png"));
+}
+
+/// The scene of docs/ngaf.md and the parameters used there.
+const SCENE: &str = "boxes:seed=3,sensor=kinect,size=320x240";
+const WINDOW: u32 = 5;
+const PARAMETERS: [(&str, f64); 3] = [("theta", 20.0), ("min", 64.0), ("window", WINDOW as f64)];
+
+#[test]
+fn the_stages_of_ngaf_look_as_the_page_shows_them() {
+    let scene = SCENE.parse::<Spec>().unwrap().frame().unwrap();
+    let ScenePixels::U16(pixels) = scene.pixels else { panic!("millimetres") };
+    let view = DepthView::new(&pixels, scene.width, scene.height).unwrap();
+    let mut enhancer = Enhancer::default();
+    let (enhanced, _) = enhancer.enhance(&view, WINDOW, 1).unwrap();
+    let filled: Vec<u16> = enhanced.rows().flatten().copied().collect();
+    let ngaf = methods::find("ngaf").unwrap();
+    let mut detector = Detector::from_method(ngaf.with(&PARAMETERS).unwrap());
+    let found = detector.detect(view).unwrap();
+    let frame = |pixels| Frame {
+        width: scene.width,
+        height: scene.height,
+        pixels: Pixels::U16(pixels),
+        missing: None,
+        valid_range: None,
+        sensor: scene.sensor,
+        format: "scene",
+        encoding: "scene",
+        warnings: Vec::new(),
+    };
+    let nothing = Detection { labels: vec![0; found.labels.len()], planes: Vec::new(), ..found.clone() };
+    check("ngaf-1-map.png", &overlay(ngaf, &frame(pixels.clone()), &nothing));
+    check("ngaf-2-enhanced.png", &overlay(ngaf, &frame(filled.clone()), &nothing));
+    check("ngaf-3-planes.png", &overlay(ngaf, &frame(filled), found));
+}
+
+fn overlay(method: &'static MethodInfo, frame: &Frame, detection: &Detection) -> Vec<u8> {
+    let report =
+        Report { source: SCENE, frame, method, parameters: &method.defaults(), detection, times: None, legend: false };
+    let output = OUTPUTS.iter().find(|output| output.name == "overlay").unwrap();
+    (output.writer(Path::new("a.png")).unwrap().encode)(&report).unwrap()
+}

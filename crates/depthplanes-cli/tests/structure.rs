@@ -1,0 +1,100 @@
+//! The invariants of ARCHITECTURE.md that can be read off the sources.
+
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Every Rust file below a folder of the project: its path from there, and its text.
+fn sources(folder: &str) -> Vec<(String, String)> {
+    fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+        for entry in folder.read_dir().unwrap_or_else(|error| panic!("{}: {error}", folder.display())) {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                collect(&path, files);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                files.push(path);
+            }
+        }
+    }
+    let (top, mut files) = (root().join(folder), Vec::new());
+    collect(&top, &mut files);
+    files.sort();
+    let named = |path: PathBuf| {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let name: Vec<_> = path.strip_prefix(&top).unwrap().iter().map(|part| part.to_str().unwrap()).collect();
+        (name.join("/"), text)
+    };
+    files.into_iter().map(named).collect()
+}
+
+/// The lines that are code, up to a file's own tests.
+fn code(text: &str) -> impl Iterator<Item = &str> {
+    let code = text.split("#[cfg(test)]").next().unwrap_or(text);
+    code.lines().filter(|line| !line.trim_start().starts_with("//"))
+}
+
+/// Files with a line of code that holds one of the words.
+fn files_with(folder: &str, words: &[&str]) -> Vec<String> {
+    let holds = |text: &str| code(text).any(|line| words.iter().any(|word| line.contains(word)));
+    sources(folder).into_iter().filter(|(_, text)| holds(text)).map(|(name, _)| name).collect()
+}
+
+#[test]
+fn the_library_asks_nothing_of_the_outside() {
+    let outside = ["std::fs", "std::env", "std::time", "std::io", "std::net", "std::process", "RandomState", "HashMap"];
+    assert_eq!(files_with("crates/depthplanes/src", &outside), [""; 0]);
+}
+
+#[test]
+fn arrows_do_not_turn_back() {
+    let ranks: [(&str, &[&str]); 5] = [
+        ("the detector", &["crate::detector", "crate::Detector"]),
+        ("scenes", &["crate::scene"]),
+        ("methods", &["crate::methods"]),
+        ("planes' records", &["crate::describe"]),
+        ("selection", &["crate::select"]),
+    ];
+    let may = |name: &str, what: &str| match what {
+        "the detector" | "scenes" => name == "lib.rs" || name.starts_with("scene/"),
+        "methods" => ["lib.rs", "detector.rs"].contains(&name) || name.starts_with("methods/"),
+        "planes' records" => name.starts_with("methods/"),
+        _ => name.starts_with("methods/") || name == "describe.rs",
+    };
+    for (what, words) in ranks {
+        for name in files_with("crates/depthplanes/src", words) {
+            assert!(may(&name, what), "{name} knows {what}");
+        }
+    }
+}
+
+#[test]
+fn unsafe_code_stands_in_the_kernels_alone() {
+    for name in files_with("crates/depthplanes/src", &["unsafe "]) {
+        assert!(name.starts_with("group/kernels/"), "{name}");
+    }
+    assert_eq!(files_with("crates/depthplanes-io/src", &["unsafe "]), [""; 0]);
+    assert_eq!(files_with("crates/depthplanes-cli/src", &["unsafe "]), [""; 0]);
+}
+
+#[test]
+fn the_argument_parser_is_known_to_one_module() {
+    for name in files_with("crates/depthplanes-cli/src", &["clap"]) {
+        assert!(name == "args.rs" || name.starts_with("args/"), "{name}");
+    }
+}
+
+#[test]
+fn the_tests_that_the_architecture_names_exist() {
+    let tests: String = sources("crates").into_iter().map(|(_, text)| text).collect();
+    let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let mut named = 0;
+    for line in text.lines().filter(|line| line.starts_with('|')) {
+        for name in line.split('`').filter(|name| name.matches('_').count() >= 3) {
+            assert!(tests.contains(&format!("fn {name}(")), "there is no test `{name}`");
+            named += 1;
+        }
+    }
+    assert!(named > 20, "{named} tests named");
+}
