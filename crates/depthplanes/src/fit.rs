@@ -253,7 +253,8 @@ impl AffineFit {
 /// Covariance of (nx, ny, nz, distance) of the plane whose inverse depth is `fit` (1/m).
 ///
 /// With m as in [`Hessian::from_inverse_depth`], m^ = m/|m|: dn = -(I - m^ m^T) dm / |m| and
-/// d(distance) = -m^ . dm / |m|^2; m is linear in (a, b, c).
+/// d(distance) = -m^ . dm / |m|^2; m is linear in (a, b, c). Of first order: it understates the scatter
+/// of small patches in strong noise.
 pub fn metric_covariance(fit: &AffineFit, camera: &Intrinsics) -> [[f64; 4]; 4] {
     let m = ray_coefficients(fit.abc, camera);
     let length = m.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -56,33 +56,116 @@ pub fn select(group: &[Option<usize>], min: usize) -> Vec<u16> {
     group.iter().map(|first| first.map_or(0, |first| label[first])).collect()
 }
 
-/// Enhancing, section 3b: window by window.
-pub fn enhance(map: &[f64], width: usize, ok: impl Fn(f64) -> bool, window: usize, whole: bool) -> Vec<f64> {
+/// Enhancing, section 3b: window by window. The filled map, and how many pixels were filled.
+pub fn enhance(
+    map: &[f64],
+    width: usize,
+    ok: impl Fn(f64) -> bool,
+    window: usize,
+    mean: impl Fn(&[f64]) -> f64,
+) -> (Vec<f64>, usize) {
     let height = map.len() / width;
     let reach = window / 2;
     let mut out = map.to_vec();
+    let mut filled = 0;
     for v in 0..height {
         for u in 0..width {
             if ok(map[v * width + u]) {
                 continue;
             }
-            let (mut area, mut count, mut sum) = (0, 0, 0.0);
+            let (mut area, mut values) = (0, Vec::new());
             for y in v.saturating_sub(reach)..(v + reach + 1).min(height) {
                 for x in u.saturating_sub(reach)..(u + reach + 1).min(width) {
                     area += 1;
                     if ok(map[y * width + x]) {
-                        count += 1;
-                        sum += map[y * width + x];
+                        values.push(map[y * width + x]);
                     }
                 }
             }
-            if count > 0 && 2 * (area - count) <= area {
-                let mean = sum / count as f64;
-                out[v * width + u] = if whole { (mean + 0.5).floor() } else { f64::from(mean as f32) };
+            if !values.is_empty() && 2 * (area - values.len()) <= area && ok(mean(&values)) {
+                out[v * width + u] = mean(&values);
+                filled += 1;
             }
         }
     }
-    out
+    (out, filled)
+}
+
+/// The mean of whole numbers, rounded half up, in whole numbers.
+pub fn whole_mean(values: &[f64]) -> f64 {
+    let (sum, count) = (values.iter().map(|&value| value as u64).sum::<u64>(), values.len() as u64);
+    ((2 * sum + count) / (2 * count)) as f64
+}
+
+/// The mean as the nearest single-precision number.
+pub fn single_mean(values: &[f64]) -> f64 {
+    f64::from((values.iter().sum::<f64>() / values.len() as f64) as f32)
+}
+
+/// A plane's record, recomputed from its pixels.
+#[derive(Debug)]
+pub struct Record {
+    pub pixel_count: usize,
+    /// `[u_min, v_min, u_max, v_max]`
+    pub bounding_box: [usize; 4],
+    pub centroid: [f64; 2],
+    pub fit: Option<Fit>,
+    /// Raster index of the first pixel.
+    pub first: usize,
+}
+
+/// `q = a u + b v + c`, and the root mean square of what is left.
+#[derive(Clone, Copy, Debug)]
+pub struct Fit {
+    pub abc: [f64; 3],
+    pub rms: f64,
+    /// Standard deviation of q, the scale that rounding errors go by.
+    pub spread: f64,
+}
+
+/// Least squares in two passes: means, then everything about the means. `None` for points on a line.
+pub fn fit(points: &[[f64; 3]]) -> Option<Fit> {
+    let n = points.len() as f64;
+    let mean: [f64; 3] = std::array::from_fn(|k| points.iter().map(|p| p[k]).sum::<f64>() / n);
+    let sum = |i: usize, j: usize| -> f64 { points.iter().map(|p| (p[i] - mean[i]) * (p[j] - mean[j])).sum() };
+    let (uu, uv, vv, uq, vq) = (sum(0, 0), sum(0, 1), sum(1, 1), sum(0, 2), sum(1, 2));
+    let det = uu * vv - uv * uv;
+    if det <= 1e-9 * uu * vv {
+        return None;
+    }
+    let (a, b) = ((uq * vv - vq * uv) / det, (vq * uu - uq * uv) / det);
+    let c = mean[2] - a * mean[0] - b * mean[1];
+    // About the means, where no digits are lost.
+    let left = |p: &[f64; 3]| p[2] - mean[2] - a * (p[0] - mean[0]) - b * (p[1] - mean[1]);
+    let squares: f64 = points.iter().map(|p| left(p) * left(p)).sum();
+    Some(Fit { abc: [a, b, c], rms: (squares / n).sqrt(), spread: (sum(2, 2) / n).sqrt() })
+}
+
+/// The record of each label 1, 2, .. of a label image.
+pub fn records(labels: &[u16], map: &[f64], width: usize) -> Vec<Record> {
+    let most = usize::from(labels.iter().copied().max().unwrap_or(0));
+    let mut pixels = vec![Vec::new(); most + 1];
+    for (at, &label) in labels.iter().enumerate() {
+        pixels[usize::from(label)].push(at);
+    }
+    pixels[1..].iter().map(|pixels| record(pixels, map, width)).collect()
+}
+
+fn record(pixels: &[usize], map: &[f64], width: usize) -> Record {
+    assert!(!pixels.is_empty(), "a label that no pixel carries");
+    let columns = || pixels.iter().map(|at| at % width);
+    let rows = || pixels.iter().map(|at| at / width);
+    let n = pixels.len() as f64;
+    let mean = |sum: usize| sum as f64 / n;
+    let points: Vec<_> = pixels.iter().map(|&at| [(at % width) as f64, (at / width) as f64, map[at]]).collect();
+    let end = |side: Option<usize>| side.expect("some pixel");
+    Record {
+        pixel_count: pixels.len(),
+        bounding_box: [end(columns().min()), end(rows().min()), end(columns().max()), end(rows().max())],
+        centroid: [mean(columns().sum()), mean(rows().sum())],
+        fit: fit(&points),
+        first: pixels[0],
+    }
 }
 
 /// Deterministic pseudo-random numbers (Steele, Lea, Flood 2014, SplitMix64).
@@ -100,6 +183,17 @@ impl Random {
     /// A whole number in 0..end.
     pub fn below(&mut self, end: u64) -> u64 {
         self.next() % end
+    }
+
+    /// A number in low..high.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// A draw of mean 0 and deviation 1 (Box and Muller 1958).
+    pub fn gaussian(&mut self) -> f64 {
+        let (radius, angle) = (1.0 - self.between(0.0, 1.0), self.between(0.0, std::f64::consts::TAU));
+        (-2.0 * radius.ln()).sqrt() * angle.cos()
     }
 }
 

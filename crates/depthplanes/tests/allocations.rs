@@ -1,0 +1,139 @@
+//! After the first frame of a size and type, detecting allocates nothing.
+//!
+//! A binary of its own, since it replaces the allocator.
+
+mod naive;
+
+use depthplanes::{DepthView, Detector, Intrinsics, Measure, Ngaf, Pixel, Sensor};
+use naive::Random;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+/// The system's allocator, counting what the current thread asks of it.
+struct Counting;
+
+thread_local! {
+    static CALLS: Cell<usize> = const { Cell::new(0) };
+    static BYTES: Cell<usize> = const { Cell::new(0) };
+}
+
+fn count(bytes: usize) {
+    CALLS.set(CALLS.get() + 1);
+    BYTES.set(BYTES.get() + bytes);
+}
+
+// SAFETY: every call is handed to the system's allocator unchanged; counting touches only
+// thread-local cells that need neither memory nor destructors.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count(layout.size());
+        // SAFETY: the caller's promises are passed on.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        count(layout.size());
+        // SAFETY: the caller's promises are passed on.
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count(size);
+        // SAFETY: the caller's promises are passed on.
+        unsafe { System.realloc(memory, layout, size) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: the caller's promises are passed on.
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Allocations and bytes of one call on this thread.
+fn allocated(call: impl FnOnce()) -> (usize, usize) {
+    let before = (CALLS.get(), BYTES.get());
+    call();
+    (CALLS.get() - before.0, BYTES.get() - before.1)
+}
+
+/// A frame unlike the one before: constant, all missing, quantised slopes, noise from none to all,
+/// few holes to many.
+fn frame<T: Pixel>(random: &mut Random, number: u64, width: usize, height: usize) -> Vec<T> {
+    let most_levels = 1 << random.below(9);
+    let (levels, step) = (1 + random.below(most_levels), 1 + random.below(20));
+    let holes = [0, 2, 30, 60, 95, 100][(number % 6) as usize];
+    let slope = random.below(4) as usize;
+    let pixel = |at: usize, random: &mut Random| {
+        let (u, v) = (at % width, at / width);
+        let value = 1 + (slope * (u + v) / 40) as u64 % 100 * step + random.below(levels) * step;
+        if random.below(100) < holes { T::ZERO } else { T::from_f64(value as f64) }
+    };
+    (0..width * height).map(|at| pixel(at, random)).collect()
+}
+
+const EVERYTHING: Ngaf = Ngaf { theta: 3.0, min: 2, window: 5, passes: 2, max_rms: 50.0, min_fill: 0.1, margin: 1 };
+
+fn sensors() -> [Sensor; 3] {
+    let intrinsics = Intrinsics::new(300.0, 300.0, 80.0, 60.0).ok();
+    let stereo = Measure::stereo(1.0, 300.0, 0.1, 0.0).unwrap();
+    [Sensor::default(), Sensor { intrinsics, ..Sensor::default() }, Sensor { measure: stereo, intrinsics }]
+}
+
+/// `first` is the number of the first frame, so that it is in turn an empty, a simple and a noisy one.
+fn check<T: Pixel>(params: Ngaf, sensor: Sensor, (width, height): (usize, usize), first: u64) {
+    let mut random = Random(first);
+    let mut detector = Detector::new(params).unwrap().sensor(sensor);
+    let frames: Vec<Vec<T>> = (0..25).map(|k| frame(&mut random, first + k, width, height)).collect();
+    let mut planes = 0;
+    for (number, frame) in frames.iter().enumerate() {
+        let view = DepthView::new(frame, width, height).unwrap().missing_value(T::from_f64(77.0));
+        let (calls, bytes) = allocated(|| planes += detector.detect(view).unwrap().planes.len());
+        if number > 0 {
+            let kind = std::any::type_name::<T>();
+            let what = format!("frame {number} of {width}x{height} {kind}, {params:?}, {sensor:?}");
+            assert_eq!((calls, bytes), (0, 0), "{what}");
+        }
+    }
+    assert!(planes > 0, "no plane in any frame");
+}
+
+#[test]
+fn the_counter_counts() {
+    let (calls, bytes) = allocated(|| drop(std::hint::black_box(vec![0u8; 1000])));
+    assert_eq!((calls, bytes), (1, 1000));
+    let (calls, _) = allocated(|| drop(std::hint::black_box(Box::new(1u64))));
+    assert_eq!(calls, 1);
+}
+
+#[test]
+fn later_frames_allocate_nothing() {
+    let plain = Ngaf { theta: 3.0, ..Ngaf::default() };
+    for sensor in sensors() {
+        for params in [plain, EVERYTHING] {
+            // The last is cut into several strips; more than 32 pixels keep its noise within 65535 planes.
+            for (size, firsts, min) in [((120, 90), 6, 2), ((97, 33), 6, 2), ((900, 600), 1, 32)] {
+                let params = Ngaf { min, ..params };
+                for first in 0..firsts {
+                    check::<u8>(params, sensor, size, first);
+                    check::<u16>(params, sensor, size, first);
+                    check::<f32>(params, sensor, size, first);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn smaller_frames_allocate_nothing_either() {
+    let mut random = Random(9);
+    let mut detector = Detector::new(EVERYTHING).unwrap().sensor(sensors()[1]);
+    for (number, (width, height)) in [(160, 120), (100, 120), (1, 1), (160, 119), (160, 120)].into_iter().enumerate() {
+        let frame: Vec<u16> = frame(&mut random, 1, width, height);
+        let view = DepthView::new(&frame, width, height).unwrap();
+        let (calls, bytes) = allocated(|| assert!(detector.detect(view).is_ok()));
+        assert!(number == 0 || (calls, bytes) == (0, 0), "{width}x{height}: {calls} calls, {bytes} bytes");
+    }
+}
