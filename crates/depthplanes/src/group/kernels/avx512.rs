@@ -202,12 +202,12 @@ fn positions(mask: &[u64], count: usize, list: &mut Vec<u16>) {
         let mut next = list.as_mut_ptr();
         let end = next.add(count);
         let lanes = _mm512_loadu_si512(LANE.as_ptr().cast());
-        for (first, &word) in (0i16..).step_by(64).zip(mask) {
+        for (first, &word) in (0u32..).step_by(64).zip(mask) {
             if word == 0 {
                 continue;
             }
             for (half, first) in [(word as u32, first), ((word >> 32) as u32, first + 32)] {
-                let columns = _mm512_add_epi16(lanes, _mm512_set1_epi16(first));
+                let columns = _mm512_add_epi16(lanes, _mm512_set1_epi16(first as i16)); // 16 bits, signed or not
                 _mm512_storeu_si512(next.cast(), _mm512_maskz_compress_epi16(half, columns));
                 next = next.add(half.count_ones() as usize);
             }
