@@ -30,8 +30,8 @@ def random_case(rng, kind, pattern):
         theta += 0.5  # whole numbers are as far apart as with theta rounded down
     top = 255 if kind == "u8" else 65535
     base = int(rng.choice([0, 0, 0, top - 64, top // 2]))
-    wrapped = np.where(units == 0, 0, (units + base) % (top + 1) if rng.random() < 0.5 else np.clip(units + base, 0, top))
-    return wrapped.astype(np.uint8 if kind == "u8" else np.uint16), theta, least
+    values = (units + base) % (top + 1) if rng.random() < 0.5 else np.clip(units + base, 0, top)
+    return np.where(units == 0, 0, values).astype(np.uint8 if kind == "u8" else np.uint16), theta, least
 
 
 def side(rng):

@@ -57,6 +57,7 @@ def test_random_maps_equal_cc3d(worker, tell, kind):
 
 @pytest.mark.parametrize("kind", ["u8", "u16", "f32"])
 def test_large_maps_of_several_strips_equal_cc3d(worker, tell, kind):
+    """A map of up to 2^19 pixels is one strip of rows and one thread's; these have more."""
     compared, several = 0, 0
     for number in range(LARGE_MAPS_PER_TYPE):
         pattern, shape = maps.PATTERNS[number % 16], maps.LARGE_SHAPES[number % 5]

@@ -12,7 +12,8 @@ ROWS = 5 * 4 + 6 * 2 * 4
 
 def rows_of(page):
     """The cells of the tables' rows, without the times."""
-    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in page.splitlines() if line.startswith("|")]
+    lines = [line for line in page.splitlines() if line.startswith("|")]
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
     tables = [row for row in cells if len(row) == len(paper_tables.HEADER)]
     assert tables.count(paper_tables.HEADER) == 2
     times = paper_tables.HEADER.index("ms")
