@@ -117,7 +117,7 @@ impl Row<'_> {
 #[inline(always)]
 pub(super) fn label_runs<I: Isa>(strip: &mut Strip, row: usize) {
     let words = strip.words;
-    let (first, end) = (strip.row_first_run[row] as usize, strip.labels.len() - SLACK);
+    let (first, end) = (strip.row_first_run[row] as usize, strip.end_run);
     let scratch = &mut strip.scratch;
     let (labels, forest, sizes) = (&mut strip.labels[..], &mut strip.forest, &mut strip.sizes);
     let row_above = row.saturating_sub(1);

@@ -44,7 +44,10 @@ pub(super) struct Strip {
     /// For each row the first of its runs, counted within the strip from 1; one more at the end.
     pub(super) row_first_run: Vec<u32>,
     /// Provisional label of each run, counted from 1, and [`SLACK`] elements more to read and write.
+    /// It only grows; what lies behind the last run is left from other maps.
     pub(super) labels: Vec<u32>,
+    /// One more than the last run.
+    pub(super) end_run: usize,
     /// Forest over the provisional labels.
     pub(super) forest: Vec<u32>,
     /// Pixels of each provisional label.
@@ -70,7 +73,8 @@ impl Strip {
             masks.resize(height * words, 0);
         }
         reserve_to(&mut self.row_first_run, height + 1);
-        reserve_to(&mut self.labels, 1 + height * width + SLACK);
+        let most_labels = 1 + height * width + SLACK;
+        self.labels.reserve(most_labels.saturating_sub(self.labels.len()));
         for per_label in [&mut self.forest, &mut self.sizes] {
             reserve_to(per_label, height * width);
         }
@@ -79,12 +83,12 @@ impl Strip {
 
     /// How many runs there are.
     pub(super) fn run_count(&self) -> usize {
-        self.labels.len() - 1 - SLACK
+        self.end_run - 1
     }
 
     /// Provisional label of each run in raster order.
     pub(super) fn labels(&self) -> &[u32] {
-        &self.labels[1..1 + self.run_count()]
+        &self.labels[1..self.end_run]
     }
 
     /// Calls `visit` for each run in raster order with its row, first and last column, and provisional
@@ -124,7 +128,7 @@ impl Strip {
 #[inline(always)]
 pub(super) fn scan<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>, strip: &mut Strip) {
     (strip.valid_pixels, strip.singles_left_out) = (0, 0);
-    strip.labels.resize(1 + SLACK, 0);
+    strip.end_run = 1;
     row_links::<I, T>(map, rule, strip, 0);
     for row in 0..strip.rows.len() {
         let Scratch { above, here, below, .. } = &mut strip.scratch;
@@ -137,7 +141,7 @@ pub(super) fn scan<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>,
         strip.scratch.find_contacts();
         label_runs::<I>(strip, row);
     }
-    strip.row_first_run.push(1 + strip.run_count() as u32);
+    strip.row_first_run.push(strip.end_run as u32);
 }
 
 /// Links of a row to the left and up, left in the scratch as those of the row below. The strip's first
@@ -167,7 +171,7 @@ fn row_links<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>, strip
 #[inline(always)]
 fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
     let words = strip.words;
-    let first = 1 + strip.run_count() as u32;
+    let first = strip.end_run as u32;
     let valid = &mut strip.valid[row * words..][..words];
     let starts = &mut strip.starts[row * words..][..words];
     let Scratch { here, below, ends, columns: [first_columns, last_columns], .. } = &mut strip.scratch;
@@ -180,7 +184,10 @@ fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
         strip.singles_left_out += (before - end) as usize;
     }
     strip.row_first_run.push(first);
-    strip.labels.resize(end as usize + SLACK, 0);
+    strip.end_run = end as usize;
+    if strip.labels.len() < strip.end_run + SLACK {
+        strip.labels.resize(strip.end_run + SLACK, 0);
+    }
     I::positions(starts, (end - first) as usize, first_columns);
     I::positions(ends, (end - first) as usize, last_columns);
 }

@@ -288,23 +288,33 @@ fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
     let [up_to, own_half, lower_half] =
         unsafe { [&UP_TO, &OWN_HALF, &LOWER_HALF].map(|constant| _mm512_loadu_si512(constant.as_ptr().cast())) };
     let mut begun = 0; // runs begun before the block
-    for at in (0..row.len()).step_by(32) {
-        let valid = (valid[at / 64] >> (at % 64)) as u32;
-        let starts = (starts[at / 64] >> (at % 64)) as u32;
+    let mut block = |valid: u32, starts: u32| {
         // The table is read from the run of the block's first pixel, which leaves 31 others to count.
         let table = begun + (starts & 1) as usize;
+        begun += starts.count_ones() as usize;
         let bits = _mm512_set1_epi32((starts & !1) as i32);
         let index = _mm512_add_epi16(
             _mm512_popcnt_epi16(_mm512_and_si512(_mm512_shuffle_epi8(bits, own_half), up_to)),
             _mm512_popcnt_epi16(_mm512_shuffle_epi8(bits, lower_half)),
         );
-        let within = u32::MAX >> (32 - (row.len() - at).min(32));
-        // SAFETY: `table` is at most the pixels before the block, so 32 more are there, checked above; the masked store writes only pixels of the row.
-        unsafe {
-            let labels = _mm512_loadu_si512(labels.as_ptr().add(table).cast());
-            let painted = _mm512_maskz_permutexvar_epi16(valid, index, labels);
-            _mm512_mask_storeu_epi16(row.as_mut_ptr().add(at).cast(), within, painted);
+        // SAFETY: `table` is at most the pixels before the block; room for 32 more was checked above.
+        let labels = unsafe { _mm512_loadu_si512(labels.as_ptr().add(table).cast()) };
+        _mm512_maskz_permutexvar_epi16(valid, index, labels)
+    };
+    let (whole, rest) = row.as_chunks_mut::<64>();
+    let masks = valid.iter().zip(starts);
+    for (pixels, (&valid, &starts)) in whole.iter_mut().zip(masks.clone()) {
+        for (half, pixels) in pixels.as_chunks_mut::<32>().0.iter_mut().enumerate() {
+            let painted = block((valid >> (32 * half)) as u32, (starts >> (32 * half)) as u32);
+            // SAFETY: 32 pixels of 2 bytes are 64 bytes.
+            unsafe { _mm512_storeu_si512(pixels.as_mut_ptr().cast(), painted) };
         }
-        begun += starts.count_ones() as usize;
+    }
+    if let Some((&valid, &starts)) = masks.skip(whole.len()).next() {
+        for (half, pixels) in rest.chunks_mut(32).enumerate() {
+            let painted = block((valid >> (32 * half)) as u32, (starts >> (32 * half)) as u32);
+            // SAFETY: the masked store writes only pixels of the row.
+            unsafe { _mm512_mask_storeu_epi16(pixels.as_mut_ptr().cast(), u32::MAX >> (32 - pixels.len()), painted) };
+        }
     }
 }
