@@ -2,7 +2,7 @@
 
     python benchmarks/run.py [--rounds N] [--record FILE] [--data DIR] [--threads N]
 
-Every round times each rival once, in turn, so that the machine's drift meets all of them alike;
+Every round times each rival three times after an untimed call, in turn, so that the machine's drift meets all of them alike;
 what is quoted are ratios of medians. The rivals run in this process, ours in a worker that answers
 commands (crates/depthplanes/examples/bench_worker.rs). Labels are compared with the rival's before
 anything is timed; a difference ends the run.
@@ -11,6 +11,7 @@ anything is timed; a difference ends the run.
 import argparse
 import csv
 import datetime
+import functools
 import pathlib
 import platform
 import statistics
@@ -86,10 +87,14 @@ def canonical(labels):
     return table[labels]
 
 
-def microseconds(work):
-    start = time.perf_counter_ns()
-    work()
-    return (time.perf_counter_ns() - start) / 1000
+def microseconds(work, times):
+    """Times of that many calls, after an untimed one."""
+    taken = []
+    for _ in range(times + 1):
+        start = time.perf_counter_ns()
+        work()
+        taken.append((time.perf_counter_ns() - start) / 1000)
+    return taken[1:]
 
 
 class Worker:
@@ -114,11 +119,11 @@ class Worker:
             sys.exit(f"the worker gave no answer to `{command}`")
         return answer
 
-    def microseconds(self, command):
-        return int(self.ask(command)) / 1000
+    def microseconds(self, command, times):
+        return [int(nanoseconds) / 1000 for nanoseconds in self.ask(f"{command} {times}").split()]
 
     def labels(self):
-        self.ask("detect")
+        self.ask("detect 1")
         self.ask(f"labels {self.painted}")
         return np.fromfile(self.painted, np.uint16).reshape(self.shape)
 
@@ -137,22 +142,20 @@ def measure(name, depth, theta, least, rounds, threads):
             cv2.filterSpeckles(filtered, 0, least, theta)
             if not np.array_equal(filtered != 0, labels != 0):
                 sys.exit(f"{name}: our kept pixels differ from cv2.filterSpeckles'; nothing is timed")
-        rivals = {
-            "ours_us": lambda: worker.microseconds("detect"),
-            "copy_us": lambda: worker.microseconds("copy"),
-            "cc3d_filter_us": lambda: microseconds(lambda: group_and_filter(depth, theta, least)),
-            "cc3d_alone_us": lambda: microseconds(lambda: cc3d.connected_components(depth, connectivity=4, delta=theta)),
-            "filter_speckles_us": lambda: microseconds(lambda: cv2.filterSpeckles(speckle_map.copy(), 0, least, theta)),
+        calls = {
+            "cc3d_filter_us": lambda: group_and_filter(depth, theta, least),
+            "cc3d_alone_us": lambda: cc3d.connected_components(depth, connectivity=4, delta=theta),
+            "filter_speckles_us": lambda: cv2.filterSpeckles(speckle_map.copy(), 0, least, theta),
         }
         if not speckles:
-            del rivals["filter_speckles_us"]
+            del calls["filter_speckles_us"]
+        rivals = {rival: functools.partial(microseconds, call) for rival, call in calls.items()}
+        rivals["ours_us"] = functools.partial(worker.microseconds, "detect")
+        rivals["copy_us"] = functools.partial(worker.microseconds, "copy")
         times = {rival: [] for rival in rivals}
         for _ in range(rounds):
             for rival, timed in rivals.items():
-                # In its own loop a detector finds its memory warm; two untimed calls give it that.
-                if rival in ("ours_us", "copy_us"):
-                    timed(), timed()
-                times[rival].append(timed())
+                times[rival] += timed(3)
         runs = worker.ask("runs")
         worker.process.stdin.close()
         worker.process.wait()

@@ -3,8 +3,8 @@
 //!
 //! `bench_worker WIDTH HEIGHT TYPE THETA MIN THREADS KERNEL FILE`: FILE holds raw little-endian
 //! pixels, TYPE is u8, u16 or f32, KERNEL is a kernel's name or `best`. Commands on stdin, one a
-//! line, answered by one line: `detect` (nanoseconds of group + select + labels), `copy`
-//! (nanoseconds of a copy of the frame), `stages` (the three times of `detect`), `runs` (how many
+//! line, answered by one line: `detect N` (nanoseconds of N times group + select + labels, after an untimed
+//! one), `copy N` (the same of a copy of the frame), `stages` (the three times of `detect`), `runs` (how many
 //! runs the frame has), `labels FILE` (writes the label image, raw u16).
 
 use depthplanes::group::{Grouper, Kernel, LinkRule, kernels};
@@ -59,20 +59,18 @@ fn serve<T: Pixel>(job: &Job, pixels: Vec<T>) -> Result<(), Box<dyn std::error::
     for line in std::io::stdin().lock().lines() {
         let line = line?;
         match line.split_once(' ').unwrap_or((&line, "")) {
-            ("detect", _) => {
-                let start = Instant::now();
+            ("detect", times) => print_times(times, || {
                 let groups = grouper.group(black_box(&view), &rule, job.threads);
                 selection.select(groups, job.min)?;
                 selection.paint(groups, &mut labels);
-                println!("{}", start.elapsed().as_nanos());
                 black_box(&labels);
-            }
-            ("copy", _) => {
-                let start = Instant::now();
+                Ok(())
+            })?,
+            ("copy", times) => print_times(times, || {
                 copy.copy_from_slice(black_box(&pixels));
-                println!("{}", start.elapsed().as_nanos());
                 black_box(&copy);
-            }
+                Ok(())
+            })?,
             ("stages", _) => {
                 let start = Instant::now();
                 let groups = grouper.group(black_box(&view), &rule, job.threads);
@@ -91,5 +89,20 @@ fn serve<T: Pixel>(job: &Job, pixels: Vec<T>) -> Result<(), Box<dyn std::error::
             _ => return Err(format!("unknown command `{line}`").into()),
         }
     }
+    Ok(())
+}
+
+/// Nanoseconds of that many calls, after an untimed one.
+fn print_times(
+    times: &str,
+    mut call: impl FnMut() -> depthplanes::Result<()>,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let mut taken = Vec::new();
+    for _ in 0..times.parse::<usize>()? + 1 {
+        let start = Instant::now();
+        call()?;
+        taken.push(start.elapsed().as_nanos().to_string());
+    }
+    println!("{}", taken[1..].join(" "));
     Ok(())
 }
