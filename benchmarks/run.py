@@ -2,7 +2,7 @@
 
     python benchmarks/run.py [--rounds N] [--record FILE] [--data DIR] [--threads N]
 
-Every round times each rival three times after an untimed call, in turn, so that the machine's drift meets all of them alike;
+Every round times each rival five times at a stretch after 10 ms of untimed calls, in turn, so that the machine's drift meets all of them alike;
 what is quoted are ratios of medians. The rivals run in this process, ours in a worker that answers
 commands (crates/depthplanes/examples/bench_worker.rs). Labels are compared with the rival's before
 anything is timed; a difference ends the run.
@@ -26,6 +26,7 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 EXAMPLES = ROOT / "target" / "release" / "examples"
+WARM_UP_MS = 10  # the worker's too; a processor that was waiting takes that long to its full speed
 FIELDS = ["frame", "width", "height", "type", "theta", "min", "runs", "planes", "ours_us", "copy_us",
           "cc3d_filter_us", "cc3d_alone_us", "filter_speckles_us", "times_cc3d_filter", "times_cc3d_alone",
           "times_filter_speckles", "copies_of_the_frame", "ours_ns_per_pixel"]
@@ -88,13 +89,14 @@ def canonical(labels):
 
 
 def microseconds(work, times):
-    """Times of that many calls, after an untimed one."""
-    taken = []
-    for _ in range(times + 1):
+    """Times of that many calls, after untimed ones for WARM_UP_MS."""
+    begin, taken = time.perf_counter_ns(), []
+    while len(taken) < times:
         start = time.perf_counter_ns()
         work()
-        taken.append((time.perf_counter_ns() - start) / 1000)
-    return taken[1:]
+        if start - begin >= WARM_UP_MS * 1e6:
+            taken.append((time.perf_counter_ns() - start) / 1000)
+    return taken
 
 
 class Worker:
@@ -155,7 +157,7 @@ def measure(name, depth, theta, least, rounds, threads):
         times = {rival: [] for rival in rivals}
         for _ in range(rounds):
             for rival, timed in rivals.items():
-                times[rival] += timed(3)
+                times[rival] += timed(5)
         runs = worker.ask("runs")
         worker.process.stdin.close()
         worker.process.wait()

@@ -3,8 +3,8 @@
 //!
 //! `bench_worker WIDTH HEIGHT TYPE THETA MIN THREADS KERNEL FILE`: FILE holds raw little-endian
 //! pixels, TYPE is u8, u16 or f32, KERNEL is a kernel's name or `best`. Commands on stdin, one a
-//! line, answered by one line: `detect N` (nanoseconds of N times group + select + labels, after an untimed
-//! one), `copy N` (the same of a copy of the frame), `stages` (the three times of `detect`), `runs` (how many
+//! line, answered by one line: `detect N` (nanoseconds of N times group + select + labels, after
+//! a warm-up), `copy N` (the same of a copy of the frame), `stages` (the three times of `detect`), `runs` (how many
 //! runs the frame has), `labels FILE` (writes the label image, raw u16).
 
 use depthplanes::group::{Grouper, Kernel, LinkRule, kernels};
@@ -12,7 +12,7 @@ use depthplanes::select::Selection;
 use depthplanes::{DepthView, Pixel};
 use std::hint::black_box;
 use std::io::BufRead;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 struct Job {
     width: usize,
@@ -92,17 +92,23 @@ fn serve<T: Pixel>(job: &Job, pixels: Vec<T>) -> Result<(), Box<dyn std::error::
     Ok(())
 }
 
-/// Nanoseconds of that many calls, after an untimed one.
+/// Untimed calls come first for this long: a processor that was waiting takes as much to its full speed.
+const WARM_UP: Duration = Duration::from_millis(10);
+
+/// Nanoseconds of that many calls, after the warm-up.
 fn print_times(
     times: &str,
     mut call: impl FnMut() -> depthplanes::Result<()>,
 ) -> Result<(), Box<dyn std::error::Error>> {
+    let (begin, times) = (Instant::now(), times.parse::<usize>()?);
     let mut taken = Vec::new();
-    for _ in 0..times.parse::<usize>()? + 1 {
+    while taken.len() < times {
         let start = Instant::now();
         call()?;
-        taken.push(start.elapsed().as_nanos().to_string());
+        if start - begin >= WARM_UP {
+            taken.push(start.elapsed().as_nanos().to_string());
+        }
     }
-    println!("{}", taken[1..].join(" "));
+    println!("{}", taken.join(" "));
     Ok(())
 }
