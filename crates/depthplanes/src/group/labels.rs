@@ -68,15 +68,18 @@ impl Scratch {
         let (contacts, later) = (&mut self.contacts[..words], &mut self.later_contacts[..words]);
         let (ends, orphans) = (&self.ends[..words], &mut self.orphans[..words]);
         let (up, left, left_above) = (&self.here.up[..words], &self.here.left[..words], &self.above.left[..words]);
-        let (mut up_left, mut contact_left, mut carry) = (0, 0, false);
-        let (mut any_later, mut any_orphans) = (0, 0);
+        let mut up_left = 0;
         for w in 0..words {
-            let contact = up[w] & !((up[w] << 1 | up_left) & left[w] & left_above[w]);
-            let behind = (contact << 1 | contact_left) & left[w];
-            let (sum, carry_1) = left[w].overflowing_add(behind);
-            let (sum, carry_2) = sum.overflowing_add(carry.into());
-            let covered = (left[w] & !sum) | behind;
-            (up_left, contact_left, carry) = (up[w] >> 63, contact >> 63, carry_1 | carry_2);
+            contacts[w] = up[w] & !((up[w] << 1 | up_left) & left[w] & left_above[w]);
+            up_left = up[w] >> 63;
+        }
+        // A flood reaches into the next word through the pixel there that is linked to the left.
+        let (mut reaching, mut any_later, mut any_orphans) = (0, 0, 0);
+        for w in 0..words {
+            let contact = contacts[w];
+            let behind = (contact << 1 | reaching) & left[w];
+            let covered = (left[w] & !left[w].wrapping_add(behind)) | behind;
+            reaching = (contact | covered) >> 63;
             (contacts[w], later[w]) = (contact & !covered, contact & covered);
             orphans[w] = ends[w] & !(contact | covered);
             any_orphans |= orphans[w];
