@@ -36,6 +36,8 @@ pub struct LinkRule<T> {
     /// The valid range's length for integers, where one comparison of `value - low` serves for both
     /// ends; its high end for `f32`.
     pub(crate) high_or_span: T,
+    /// Whether nothing was said of validity: 0, NaN and the infinities are missing, and that is all.
+    pub(crate) is_default: bool,
 }
 
 impl<T: Pixel> LinkRule<T> {
@@ -44,6 +46,7 @@ impl<T: Pixel> LinkRule<T> {
     /// # Errors
     /// [`Error::Parameter`] unless theta is a number of at least 0.
     pub fn new(mut validity: Validity<T>, theta: f64) -> Result<Self> {
+        let is_default = validity == Validity::default();
         if T::IS_INTEGER && validity.low == T::ZERO {
             validity.low = T::from_f64(1.0);
         }
@@ -52,6 +55,7 @@ impl<T: Pixel> LinkRule<T> {
                 validity,
                 theta: T::floor_from(theta),
                 high_or_span: T::high_or_span(validity.low, validity.high),
+                is_default,
             })
         } else {
             Err(Error::Parameter { name: "theta", given: theta, accepted: "a number from 0 up, in map units".into() })

@@ -40,7 +40,7 @@ pub(super) fn run<R>(work: impl FnOnce() -> R) -> R {
 /// are within theta of each other.
 macro_rules! masks {
     ($name:ident, $t:ty, $lanes:literal, $load:path, $set:path,
-     |$a:ident, $b:ident, $sentinel:ident, $low:ident, $high:ident, $theta:ident| $valid:expr, $close:expr) => {
+     |$a:ident, $b:ident, $sentinel:ident, $low:ident, $high:ident, $theta:ident| $valid:expr, $by_default:expr, $close:expr) => {
         #[target_feature(enable = "avx512f,avx512bw,avx512vl,bmi1,bmi2")]
         fn $name(row: &[$t], up: &[$t], rule: &LinkRule<$t>, out: RowMasks<'_>) {
             let v = &rule.validity;
@@ -53,6 +53,13 @@ macro_rules! masks {
                     word | ($valid as u64) << lane
                 })
             };
+            let by_default = |here: *const $t| {
+                (0..64).step_by($lanes).fold(0u64, |word, lane| {
+                    // SAFETY: as above.
+                    let $a = unsafe { $load(here.add(lane) as *const _) };
+                    word | ($by_default as u64) << lane
+                })
+            };
             let close = |here: *const $t, there: *const $t| {
                 (0..64).step_by($lanes).fold(0u64, |word, lane| {
                     // SAFETY: as above.
@@ -60,8 +67,13 @@ macro_rules! masks {
                     word | ($close as u64) << lane
                 })
             };
-            // SAFETY: both read 64 pixels at each pointer.
-            unsafe { words(row, up, out, valid, close) }
+            // SAFETY: all read 64 pixels at each pointer.
+            unsafe {
+                match rule.is_default {
+                    true => words(row, up, out, by_default, close),
+                    false => words(row, up, out, valid, close),
+                }
+            }
         }
     };
 }
@@ -77,6 +89,7 @@ masks!(
         a,
         sentinel
     ),
+    _mm512_test_epi8_mask(a, a),
     _mm512_cmple_epu8_mask(_mm512_sub_epi8(_mm512_max_epu8(a, b), _mm512_min_epu8(a, b)), theta)
 );
 
@@ -91,6 +104,7 @@ masks!(
         a,
         sentinel
     ),
+    _mm512_test_epi16_mask(a, a),
     _mm512_cmple_epu16_mask(_mm512_sub_epi16(_mm512_max_epu16(a, b), _mm512_min_epu16(a, b)), theta)
 );
 
@@ -104,6 +118,11 @@ masks!(
         & _mm512_cmp_ps_mask::<_CMP_NEQ_UQ>(a, sentinel)
         & _mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, low)
         & _mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, high),
+    _mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(
+        _mm512_cmp_ps_mask::<_CMP_NEQ_UQ>(a, _mm512_setzero_ps()),
+        _mm512_abs_ps(a),
+        _mm512_set1_ps(f32::MAX)
+    ),
     _mm512_cmp_ps_mask::<_CMP_LE_OQ>(_mm512_abs_ps(_mm512_sub_ps(a, b)), theta)
 );
 
