@@ -174,7 +174,7 @@ fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
     let first = strip.end_run as u32;
     let valid = &mut strip.valid[row * words..][..words];
     let starts = &mut strip.starts[row * words..][..words];
-    let Scratch { here, below, ends, columns: [first_columns, last_columns], .. } = &mut strip.scratch;
+    let Scratch { here, below, ends, columns, .. } = &mut strip.scratch;
     let mut end = start_runs(valid, &here.left, starts, ends, &mut here.runs_before, first);
     let is_inner = row > 0 && row + 1 < strip.rows.len(); // outer rows have links to other strips
     if strip.leaves_out_singles && is_inner && (end - first) as usize * DENSE > strip.width {
@@ -188,8 +188,7 @@ fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
     if strip.labels.len() < strip.end_run + SLACK {
         strip.labels.resize(strip.end_run + SLACK, 0);
     }
-    I::positions(starts, (end - first) as usize, first_columns);
-    I::positions(ends, (end - first) as usize, last_columns);
+    I::positions([starts, ends], (end - first) as usize, columns);
 }
 
 /// Where runs start and end, and how many start before each word, from `first` on; one more than the

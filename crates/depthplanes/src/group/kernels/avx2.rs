@@ -146,8 +146,8 @@ impl Isa for Avx2 {
         unsafe { masks_f32(row, up, rule, out) }
     }
     #[inline(always)]
-    fn positions(mask: &[u64], count: usize, list: &mut Vec<u16>) {
-        Portable::positions(mask, count, list);
+    fn positions(masks: [&[u64]; 2], count: usize, lists: &mut [Vec<u16>; 2]) {
+        Portable::positions(masks, count, lists);
     }
     #[inline(always)]
     fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {

@@ -143,9 +143,9 @@ impl Isa for Avx512 {
         unsafe { masks_f32(row, up, rule, out) }
     }
     #[inline(always)]
-    fn positions(mask: &[u64], count: usize, list: &mut Vec<u16>) {
+    fn positions(masks: [&[u64]; 2], count: usize, lists: &mut [Vec<u16>; 2]) {
         // SAFETY: as above.
-        unsafe { positions(mask, count, list) }
+        unsafe { positions(masks, count, lists) }
     }
     const HAS_DENSE_LABELS: bool = true;
     #[inline(always)]
@@ -213,26 +213,30 @@ static LOWER_HALF: [u16; 32] = {
 
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi2,popcnt")]
-fn positions(mask: &[u64], count: usize, list: &mut Vec<u16>) {
-    assert!(list.capacity() >= count + SLACK);
+fn positions([a, b]: [&[u64]; 2], count: usize, [list_a, list_b]: &mut [Vec<u16>; 2]) {
+    assert!(list_a.capacity() >= count + SLACK && list_b.capacity() >= count + SLACK);
     // SAFETY: each store writes 32 elements from the first unused one, of which `count_ones` stay.
-    // There is room for `count` and 64 more, and the pointer is held to `count` word by word.
+    // There is room for `count` and 64 more, and the pointers are held to `count` word by word.
     unsafe {
-        let mut next = list.as_mut_ptr();
-        let end = next.add(count);
+        let (mut next_a, mut next_b) = (list_a.as_mut_ptr(), list_b.as_mut_ptr());
+        let (end_a, end_b) = (next_a.add(count), next_b.add(count));
         let lanes = _mm512_loadu_si512(LANE.as_ptr().cast());
-        for (first, &word) in (0u32..).step_by(64).zip(mask) {
-            if word == 0 {
+        for (first, (&a, &b)) in (0u32..).step_by(64).zip(a.iter().zip(b)) {
+            if a | b == 0 {
                 continue;
             }
-            for (half, first) in [(word as u32, first), ((word >> 32) as u32, first + 32)] {
-                let columns = _mm512_add_epi16(lanes, _mm512_set1_epi16(first as i16)); // 16 bits, signed or not
-                _mm512_storeu_si512(next.cast(), _mm512_maskz_compress_epi16(half, columns));
-                next = next.add(half.count_ones() as usize);
+            let low = _mm512_add_epi16(lanes, _mm512_set1_epi16(first as i16)); // 16 bits, signed or not
+            let high = _mm512_add_epi16(low, _mm512_set1_epi16(32));
+            for (word, next) in [(a, &mut next_a), (b, &mut next_b)] {
+                _mm512_storeu_si512((*next).cast(), _mm512_maskz_compress_epi16(word as u32, low));
+                *next = next.add((word as u32).count_ones() as usize);
+                _mm512_storeu_si512((*next).cast(), _mm512_maskz_compress_epi16((word >> 32) as u32, high));
+                *next = next.add((word >> 32).count_ones() as usize);
             }
-            assert!(next <= end, "more bits than counted");
+            assert!(next_a <= end_a && next_b <= end_b, "more bits than counted");
         }
-        list.set_len(count);
+        list_a.set_len(count);
+        list_b.set_len(count);
     }
 }
 

@@ -33,8 +33,9 @@ pub trait Isa {
     /// Masks of one row of floating-point values.
     fn masks_f32(row: &[f32], up: &[f32], rule: &LinkRule<f32>, out: RowMasks<'_>);
 
-    /// Lists the positions of the `count` set bits. The list has room for them and [`SLACK`] to spare.
-    fn positions(mask: &[u64], count: usize, list: &mut Vec<u16>);
+    /// Lists the positions of the set bits of two masks that have `count` each. The lists have room for
+    /// them and [`SLACK`] to spare.
+    fn positions(masks: [&[u64]; 2], count: usize, lists: &mut [Vec<u16>; 2]);
 
     /// Whether [`Isa::dense_labels`] is worth calling for rows of many runs.
     const HAS_DENSE_LABELS: bool = false;
