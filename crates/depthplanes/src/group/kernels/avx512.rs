@@ -325,15 +325,15 @@ fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
         _mm512_maskz_permutexvar_epi16(valid, index, labels)
     };
     let (whole, rest) = row.as_chunks_mut::<64>();
-    let masks = valid.iter().zip(starts);
-    for (pixels, (&valid, &starts)) in whole.iter_mut().zip(masks.clone()) {
+    let mut masks = valid.iter().zip(starts);
+    for (pixels, (&valid, &starts)) in whole.iter_mut().zip(masks.by_ref()) {
         for (half, pixels) in pixels.as_chunks_mut::<32>().0.iter_mut().enumerate() {
             let painted = block((valid >> (32 * half)) as u32, (starts >> (32 * half)) as u32);
             // SAFETY: 32 pixels of 2 bytes are 64 bytes.
             unsafe { _mm512_storeu_si512(pixels.as_mut_ptr().cast(), painted) };
         }
     }
-    if let Some((&valid, &starts)) = masks.skip(whole.len()).next() {
+    if let Some((&valid, &starts)) = masks.next() {
         for (half, pixels) in rest.chunks_mut(32).enumerate() {
             let painted = block((valid >> (32 * half)) as u32, (starts >> (32 * half)) as u32);
             // SAFETY: the masked store writes only pixels of the row.
