@@ -12,6 +12,7 @@ import argparse
 import csv
 import datetime
 import functools
+import importlib.metadata
 import pathlib
 import platform
 import statistics
@@ -208,7 +209,7 @@ def main():
         options.record.parent.mkdir(parents=True, exist_ok=True)
         with options.record.open("w", newline="") as file:
             file.write(f"# {processor()}, {options.threads} thread(s), {options.rounds} rounds, "
-                       f"{datetime.date.today()}, cc3d {cc3d.__version__ if hasattr(cc3d, '__version__') else ''}, "
+                       f"{datetime.date.today()}, cc3d {importlib.metadata.version('connected-components-3d')}, "
                        f"cv2 {cv2.__version__}, numpy {np.__version__}\n")
             writer = csv.DictWriter(file, FIELDS)
             writer.writeheader()

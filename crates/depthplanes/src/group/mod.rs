@@ -1,7 +1,8 @@
 //! Neighbour grouping (paper, section 3c): the 4-connected components of the links between valid
 //! neighbours whose values differ by at most theta.
 //!
-//! In: a map and theta. Out: [`Groups`], every valid pixel in exactly one group. Why runs of linked
+//! In: a map and theta. Out: [`Groups`], every valid pixel in exactly one group (but for lone pixels
+//! where [`Grouper::leave_out_singles`] allows to skip them). Why runs of linked
 //! pixels instead of pixels: links of a row fit 64 to a machine word, so a row costs a few vector
 //! instructions and only the places where a run first touches a run above cost a step each. The
 //! answer is the same for every kernel and any number of threads, since components do not depend on
@@ -17,8 +18,7 @@ mod strip;
 
 use crate::error::{Error, Result};
 use crate::map::{DepthView, Pixel, Validity};
-pub(crate) use kernels::vectorised;
-pub(crate) use kernels::{Compiled, Isa};
+pub(crate) use kernels::{Compiled, Isa, vectorised};
 pub use kernels::{Kernel, kernels};
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;

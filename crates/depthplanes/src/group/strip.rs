@@ -21,7 +21,7 @@ pub struct RowMasks<'a> {
 }
 
 /// A row is dense if it has more runs than one in this many pixels. Set where labelling runs many at a
-/// time begins to pay; frames of 5,000 to 250,000 runs take the same time from 4 to 10.
+/// time begins to pay; measured at 6, 10 and 16, which differ by at most 6 % on any of six frames.
 pub(super) const DENSE: usize = 6;
 
 /// What a strip knows after [`scan`].
