@@ -80,6 +80,13 @@ pub enum Error {
         /// Planes found.
         found: usize,
     },
+    /// A truth and a prediction that are not of the same pixels.
+    LabelCounts {
+        /// Labels of the truth.
+        truth: usize,
+        /// Labels of the prediction.
+        prediction: usize,
+    },
 }
 
 impl fmt::Display for Error {
@@ -125,6 +132,10 @@ impl fmt::Display for Error {
             Error::TooManyPlanes { found } => write!(
                 f,
                 "{found} planes were found and labels have 16 bits (65535 at most); raise `min` or `theta`, or enhance the map first"
+            ),
+            Error::LabelCounts { truth, prediction } => write!(
+                f,
+                "the truth has {truth} labels and the prediction {prediction}; both must be label images of one size"
             ),
         }
     }

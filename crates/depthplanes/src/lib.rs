@@ -4,6 +4,7 @@
 //! `DepthView -> enhance -> group -> select -> fit -> Detection`.
 //!
 //! [`Detector`] runs a whole method over frame after frame; the stages stand alone as well.
+//! [`metrics`] holds label images against the truth.
 
 pub mod camera;
 pub mod describe;
@@ -15,6 +16,7 @@ pub mod fit;
 pub mod group;
 pub mod map;
 pub mod methods;
+pub mod metrics;
 pub mod scene;
 pub mod select;
 
