@@ -20,6 +20,7 @@ pub(crate) use flags::Reading;
 pub(crate) enum Command {
     Detect(Box<Detect>),
     Inspect { inputs: Vec<OsString>, reading: Box<Reading>, json: bool },
+    Score(Score),
     Demo { out_dir: PathBuf },
     Methods,
     Params { method: Option<&'static MethodInfo> },
@@ -47,6 +48,15 @@ pub(crate) struct Detect {
     pub(crate) threads: usize,
 }
 
+/// `depthplanes score`.
+pub(crate) struct Score {
+    pub(crate) truth: OsString,
+    pub(crate) prediction: OsString,
+    pub(crate) tolerance: f64,
+    pub(crate) truth_from: u16,
+    pub(crate) json: bool,
+}
+
 /// Parses the command line; on wrong use, or where help is asked for, it prints and exits.
 pub(crate) fn parse() -> Command {
     let matches = program().get_matches();
@@ -58,6 +68,7 @@ pub(crate) fn parse() -> Command {
             reading: Box::new(Reading::from_matches(matches)),
             json: matches.get_flag("json"),
         },
+        "score" => Command::Score(score(matches)),
         "demo" => Command::Demo { out_dir: path(matches, "out-dir").expect("it has a default") },
         "methods" => Command::Methods,
         "params" => Command::Params { method: method(matches) },
@@ -96,7 +107,7 @@ const EXIT_CODES: &str = "Exit codes:
   0    done
   1    something went wrong while processing or writing
   2    wrong use or wrong input: usage, an unreadable file, a parameter out of range;
-       of many inputs the good ones are done all the same";
+       `detect` and `inspect` do the good ones of many inputs all the same";
 
 fn program() -> clap::Command {
     clap::Command::new("depthplanes")
@@ -105,13 +116,15 @@ fn program() -> clap::Command {
         .after_help(format!(
             "First steps:\n  depthplanes demo                       a made-up scene through the whole pipeline\n  \
              depthplanes inspect map.png            what is in a file, and how to read it\n  \
-             depthplanes detect map.png             the planes of a map\n\n{EXIT_CODES}"
+             depthplanes detect map.png             the planes of a map\n  \
+             depthplanes score truth.png labels.png how good they are\n\n{EXIT_CODES}"
         ))
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands([
             detect_command(),
             inspect_command(),
+            score_command(),
             demo_command(),
             clap::Command::new("methods").about("Lists the methods"),
             clap::Command::new("params")
@@ -173,6 +186,29 @@ fn inspect_command() -> clap::Command {
         .arg(flags::switch("json", "Print a JSON line for each input"))
 }
 
+fn score_command() -> clap::Command {
+    let word = |id: &'static str| Arg::new(id).required(true).value_parser(value_parser!(OsString));
+    clap::Command::new("score")
+        .about("Scores label images against the truth: SegComp, EVOPS, Rand index and others")
+        .after_help(EXIT_CODES)
+        .args([
+            word("truth").value_name("TRUTH").help(
+                "Label image of the truth, 0 = no plane; a folder of them; or scene:SPEC for a made-up scene's truth",
+            ),
+            word("prediction")
+                .value_name("PRED")
+                .help("Label image to score, as `detect --labels` writes it, or a folder with the same names"),
+            flags::number("tolerance", "SHARE")
+                .long("tolerance")
+                .default_value("0.8")
+                .help("SegComp: the share of a plane that an overlap must exceed, 0.51 to 0.95"),
+            flags::label("truth-from", "LABEL")
+                .default_value("1")
+                .help("The lowest truth label that is a plane; SegComp's and SynPEB's truth has noise below 10"),
+            flags::switch("json", "Print one JSON document"),
+        ])
+}
+
 fn demo_command() -> clap::Command {
     let folder = flags::path("out-dir", "DIR").default_value("depthplanes-demo").help("Where the files go");
     clap::Command::new("demo").about("Runs a made-up scene through the whole pipeline").arg(folder)
@@ -203,6 +239,17 @@ fn detect(matches: &ArgMatches) -> Detect {
         repeat: matches.get_one("repeat").copied().unwrap_or(0),
         jobs: count("jobs"),
         threads: count("threads"),
+    }
+}
+
+fn score(matches: &ArgMatches) -> Score {
+    let word = |id| matches.get_one::<OsString>(id).cloned().expect("it is required");
+    Score {
+        truth: word("truth"),
+        prediction: word("prediction"),
+        tolerance: *matches.get_one("tolerance").expect("it has a default"),
+        truth_from: *matches.get_one("truth-from").expect("it has a default"),
+        json: matches.get_flag("json"),
     }
 }
 

@@ -73,16 +73,10 @@ fn expand_word(word: &OsStr) -> Outcome<Vec<Input>> {
     }
 }
 
-/// The files of a folder whose extension belongs to a format; not our own outputs, not subfolders.
+/// The maps of a folder: not our own outputs, not subfolders.
 fn maps_in(folder: &Path) -> Outcome<Vec<Input>> {
-    let failed = |error| Failure::request(format!("{}: cannot be listed: {error}", folder.display()));
-    let mut maps = Vec::new();
-    for entry in folder.read_dir().map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        if is_map(&path) {
-            maps.push(path);
-        }
-    }
+    let mut maps = files_in(folder)?;
+    maps.retain(|path| !is_ours(path));
     if maps.is_empty() {
         let known = FORMATS.iter().flat_map(|format| format.extensions);
         let known: Vec<String> = known.map(|extension| format!("*.{extension}")).collect();
@@ -92,13 +86,36 @@ fn maps_in(folder: &Path) -> Outcome<Vec<Input>> {
     Ok(in_natural_order(maps))
 }
 
-fn is_map(path: &Path) -> bool {
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+/// The files of a folder whose extension belongs to a format, hidden ones left out.
+///
+/// # Errors
+/// A folder that cannot be listed.
+pub(crate) fn files_in(folder: &Path) -> Outcome<Vec<PathBuf>> {
+    let failed = |error| Failure::request(format!("{}: cannot be listed: {error}", folder.display()));
+    let mut files = Vec::new();
+    for entry in folder.read_dir().map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if is_readable(&path) {
+            files.push(path);
+        }
+    }
+    Ok(files)
+}
+
+fn is_readable(path: &Path) -> bool {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let known = FORMATS.iter().any(|format| format.extensions.contains(&extension.as_str()));
-    // `detect` writes INPUT.labels.png, `demo` writes labels.png.
-    let ours = OUTPUTS.iter().any(|output| name == output.file || name.ends_with(&format!(".{}", output.file)));
-    known && !ours && !name.starts_with('.') && path.is_file()
+    known && !file_name(path).starts_with('.') && path.is_file()
+}
+
+/// `detect` writes INPUT.labels.png, `demo` writes labels.png.
+fn is_ours(path: &Path) -> bool {
+    let name = file_name(path);
+    OUTPUTS.iter().any(|output| name == output.file || name.ends_with(&format!(".{}", output.file)))
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 fn matching(pattern: &str) -> Outcome<Vec<Input>> {

@@ -6,6 +6,7 @@ mod failure;
 mod inputs;
 mod load;
 mod natural;
+mod pairs;
 mod pool;
 mod run;
 mod show;

@@ -53,6 +53,23 @@ const WRONG: &[(&[&str], &str)] = &[
     (&["detect", "scene:room:sensor=sonar"], "kinect"),
     (&["inspect", "notes.txt"], "accepted: PNG"),
     (&["inspect", "gone.pgm"], "gone.pgm"),
+    (&["score", "map.pgm"], "<PRED>"),
+    (&["score", "map.pgm", "gone.png"], "gone.png"),
+    (&["score", "map.pgm", "notes.txt"], "accepted: a label image"),
+    (&["score", "cut.pgm", "map.pgm"], "cut.pgm"),
+    (&["score", "map.pgm", "floats.pfm"], "floats.pfm: not a readable pfm: it holds floating-point numbers"),
+    (&["score", "map.pgm", "small.pgm"], "small.pgm: 2 x 1 labels, but the truth map.pgm has 32 x 24"),
+    (&["score", "map.pgm", "map.pgm", "--tolerance", "0.5"], "is 0.5; accepted: a number from 0.51 to 0.95"),
+    (&["score", "map.pgm", "map.pgm", "--tolerance", "nan"], "a number from 0.51 to 0.95"),
+    (&["score", "map.pgm", "map.pgm", "--tolerance", "much"], "`much` is not a number"),
+    (&["score", "map.pgm", "map.pgm", "--truth-from", "0"], "a whole number from 1 to 65535"),
+    (&["score", "map.pgm", "folder.png"], "folder.png: this is a folder, but map.pgm is not"),
+    (&["score", "folder.png", "twice"], "twice/map."),
+    (&["score", "folder.png", "empty"], "empty: no label image in this folder"),
+    (&["score", "twice", "folder.png"], "keep one of them"),
+    (&["score", "folder.png", "other"], "folder.png/map.pgm: no prediction for it; other/map.labels.png would be one"),
+    (&["score", "scene:atlantis", "map.pgm"], "room"),
+    (&["score", "scene:room", "map.pgm"], "both must be of the same map"),
     (&["params", "magic"], "ngaf"),
     (&["completions", "dosshell"], "bash"),
     (&["demo", "--out-dir", "notes.txt"], "notes.txt"),
@@ -68,6 +85,14 @@ fn bench(name: &str) -> Bench {
     std::fs::create_dir(bench.folder.join("empty")).unwrap();
     std::fs::create_dir(bench.folder.join("folder.png")).unwrap();
     bench.write("folder.png/map.pgm", &whole);
+    bench.write("small.pgm", b"P5 2 1 255\n\x00\x01");
+    bench.write("floats.pfm", b"Pf\n1 1\n-1.0\n\x00\x00\x80\x3f");
+    for folder in ["twice", "other"] {
+        std::fs::create_dir(bench.folder.join(folder)).unwrap();
+    }
+    bench.write("twice/map.pgm", &whole);
+    bench.write("twice/map.pnm", &whole);
+    bench.write("other/another.pgm", &whole);
     bench
 }
 

@@ -10,10 +10,12 @@ pub mod error;
 pub mod formats;
 mod frame;
 pub mod inspect;
+pub mod labels;
 pub mod outputs;
 pub mod presets;
 pub mod read;
 
 pub use error::{Error, Result};
 pub use frame::{Frame, Pixels};
+pub use labels::{LabelImage, read_labels};
 pub use read::{ReadOptions, decode, read};

@@ -147,7 +147,16 @@ pub(super) fn count(id: &'static str, value: &'static str) -> Arg {
     })
 }
 
-fn number(id: &'static str, value: &'static str) -> Arg {
+/// A flag that takes a plane's label.
+pub(super) fn label(id: &'static str, value: &'static str) -> Arg {
+    Arg::new(id).long(id).value_name(value).value_parser(|text: &str| match text.parse::<u16>() {
+        Ok(label) if label > 0 => Ok(label),
+        _ => Err(format!("accepted: a whole number from 1 to {}", u16::MAX)),
+    })
+}
+
+/// An argument that takes a number of any kind.
+pub(super) fn number(id: &'static str, value: &'static str) -> Arg {
     Arg::new(id).value_name(value).allow_hyphen_values(true).value_parser(parse_number)
 }
 
