@@ -136,7 +136,15 @@ fn fill(text: &str, marker: &str, heading: &str, rows: impl Iterator<Item = Stri
 #[test]
 fn links_of_the_docs_lead_to_files() {
     let mut links = 0;
-    for document in ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/cli.md", "docs/ngaf.md"] {
+    for document in [
+        "README.md",
+        "ARCHITECTURE.md",
+        "CONTRIBUTING.md",
+        "CHANGELOG.md",
+        "docs/cli.md",
+        "docs/ngaf.md",
+        "docs/metrics.md",
+    ] {
         let path = root().join(document);
         let text = std::fs::read_to_string(&path).unwrap();
         let targets =

@@ -63,6 +63,21 @@ fn json_has_every_measure_and_the_classes_of_each_label() {
 }
 
 #[test]
+fn the_page_of_measures_names_every_one() {
+    let record = json(&bench("score_page").run(&["score", "truth.pgm", "found.pgm", "--json"]).ok());
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/metrics.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let mut named = 0;
+    for (family, measures) in record["mean"].as_object().unwrap() {
+        for name in measures.as_object().unwrap().keys() {
+            assert!(page.contains(&format!("`{family}.{name}`")), "docs/metrics.md does not name {family}.{name}");
+            named += 1;
+        }
+    }
+    assert!(named > 20, "{named}");
+}
+
+#[test]
 fn the_tolerance_decides_what_is_correct() {
     let bench = bench("score_tolerance");
     bench.write("part.pgm", &labels([7, 7, 7, 7, 0, 0, 3, 3, 3, 3, 3, 3])); // 4 of the 5 pixels of plane 1
@@ -122,4 +137,15 @@ fn what_detect_finds_in_a_scene_is_scored_against_its_truth() {
     let pair = json(&bench.run(&["score", scene, "labels.npy", "--json"]).ok())["pairs"][0].clone();
     assert_eq!(pair["truth"], scene);
     assert!(pair["segcomp"]["correct"].as_u64().unwrap() > 0, "{pair}");
+}
+
+#[test]
+fn a_map_taken_for_labels_is_remarked_on() {
+    let bench = Bench::new("score_map");
+    let mut map = b"P5 64 32 65535\n".to_vec();
+    map.extend((0..64 * 32u16).flat_map(|value| (2 * value).to_be_bytes()));
+    bench.write("map.pgm", &map);
+    let ran = bench.run(&["score", "map.pgm", "map.pgm"]);
+    assert!(ran.err.contains("map.pgm: 2048 different labels; is this a map"), "{ran:?}");
+    ran.ok();
 }

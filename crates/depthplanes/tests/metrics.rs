@@ -173,6 +173,7 @@ fn evops_of_nothing_is_0_as_in_the_package() {
     for counts in [&[][..], &[(0, 0, 5)], &[(1, 0, 5)], &[(0, 1, 5)]] {
         let found = evops(&table(counts));
         assert_eq!((found.precision, found.recall, found.f_score, found.mean_iou), (0.0, 0.0, 0.0, 0.0));
+        assert!(found.mean_iou.is_sign_positive() && found.panoptic_dice.is_sign_positive());
         let (truth, prediction) = (counts.iter().any(|c| c.0 > 0), counts.iter().any(|c| c.1 > 0));
         assert_eq!((found.missed, found.noise), (f64::from(truth), f64::from(prediction)));
     }
@@ -192,6 +193,7 @@ fn partition_measures_by_hand() {
     assert!(close(found.segmentation_covering, ((2.0 * 0.5 + 2.0 * 2.0 / 3.0) + (0.5 + 3.0 * 2.0 / 3.0)) / 8.0));
     let on_planes = partition(&all.on_truth_planes()).unwrap();
     assert_eq!((on_planes.rand_index, on_planes.variation_of_information), (1.0, 0.0));
+    assert!(on_planes.variation_of_information.is_sign_positive());
     assert_eq!(on_planes.segmentation_covering, 1.0);
 }
 

@@ -146,6 +146,7 @@ fn score(pair: Pair, tolerance: Tolerance, truth_from: u16) -> Outcome<Scored> {
         )));
     }
     let table = Contingency::new(&truth.labels, &prediction.labels)?.truth_from(truth_from);
+    warn_of_maps(&pair, &table);
     Ok(Scored {
         pair,
         size,
@@ -155,6 +156,16 @@ fn score(pair: Pair, tolerance: Tolerance, truth_from: u16) -> Outcome<Scored> {
         partition: partition(&table),
         on_planes: partition(&table.on_truth_planes()),
     })
+}
+
+/// More labels than anybody gives: a depth map that was taken for a label image.
+const MANY: usize = 1000;
+
+fn warn_of_maps(pair: &Pair, table: &Contingency) {
+    let sides = [(pair.truth.name(), table.truth()), (pair.prediction.display().to_string(), table.prediction())];
+    for (name, regions) in sides.iter().filter(|(_, regions)| regions.len() > MANY) {
+        note(&format!("{name}: {} different labels; is this a map, not a label image?", regions.len()));
+    }
 }
 
 fn read_truth(truth: &Truth) -> Outcome<LabelImage> {

@@ -48,9 +48,9 @@ pub fn evops(table: &Contingency) -> Evops {
     let precision = share(matched.len(), table.predicted_planes().len());
     let recall = share(matched.len(), table.truth_planes().len());
     let f_score = if matched.is_empty() { 0.0 } else { 2.0 * precision * recall / (precision + recall) };
-    let mean =
-        |of: fn(&Overlap) -> f64| matched.iter().map(|overlap| of(overlap)).sum::<f64>() / matched.len().max(1) as f64;
-    let (mean_iou, mean_dice) = (mean(Overlap::iou), mean(Overlap::dice));
+    let sum = |of: fn(&Overlap) -> f64| matched.iter().fold(0.0, |sum, overlap| sum + of(overlap));
+    let matches = matched.len().max(1) as f64;
+    let (mean_iou, mean_dice) = (sum(Overlap::iou) / matches, sum(Overlap::dice) / matches);
     let (over_segmented, missed) = split_and_lost(table);
     let (under_segmented, noise) = split_and_lost(&table.swapped());
     let pair = |overlap: &&Overlap| Match { truth: overlap.truth.label, prediction: overlap.prediction.label };

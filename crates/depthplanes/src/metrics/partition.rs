@@ -3,7 +3,7 @@
 //!
 //! As in PlaneRCNN's `evaluateMasksTensor` the pixels of no plane are one more region on either
 //! side. Which pixels take part is the table's matter: all of them, or
-//! [`Contingency::on_truth_planes`], which the papers on NYUv2 and ScanNet use.
+//! those on truth planes ([`Contingency::on_truth_planes`]), as later papers have it.
 
 use super::contingency::{Contingency, Overlap, Region};
 use std::collections::BTreeMap;
@@ -44,10 +44,11 @@ fn rand_index(table: &Contingency) -> f64 {
 /// H(rows) + H(columns) - 2 MI = H(rows | columns) + H(columns | rows); so written, no term is
 /// negative.
 fn variation_of_information(table: &Contingency) -> f64 {
-    let surprise = |overlap: &Overlap| {
-        -(overlap.pixels as f64) * (overlap.share_of_truth().log2() + overlap.share_of_prediction().log2())
+    let surprise = |share: f64| share.recip().log2();
+    let bits = |overlap: &Overlap| {
+        overlap.pixels as f64 * (surprise(overlap.share_of_truth()) + surprise(overlap.share_of_prediction()))
     };
-    table.overlaps().iter().map(surprise).sum::<f64>().max(0.0) / table.pixels() as f64
+    table.overlaps().iter().map(bits).sum::<f64>() / table.pixels() as f64
 }
 
 /// Sum over the truth's regions of their share of the pixels times their best intersection over union.
