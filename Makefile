@@ -90,9 +90,9 @@ clean: ## Remove everything that was made
 	find . -name __pycache__ -o -name .pytest_cache | xargs rm -rf
 
 # Anew when the packages change, or when an earlier attempt did not finish.
-$(VENV): tests/oracles/requirements.txt
+$(VENV): tests/oracles/requirements.txt tests/oracles/requirements-alone.txt
 	$(call say,Python packages into .venv)
-	@scripts/venv '$(PYTHON)' $<
+	@scripts/venv '$(PYTHON)' $^
 	@touch $@
 
 $(CARGO_FUZZ):
