@@ -4,7 +4,8 @@ use depthplanes::metrics::{
     Contingency, Match, Overlap, Region, Split, Tolerance, adjacent, angle_errors, evops, partition, plane_error,
     plane_errors, segcomp,
 };
-use depthplanes::{Error, Hessian};
+use depthplanes::scene::Spec;
+use depthplanes::{Detector, Error, Hessian, Ngaf};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -260,6 +261,23 @@ fn the_angle_between_correct_neighbours_is_compared() {
     // (1, 2) is 45 degrees instead of 90; 13 has no plane; 4 is missed.
     let errors = angle_errors(&found, &[(1, 2), (1, 3), (1, 4)], truth, prediction);
     assert!(errors.len() == 1 && close(errors[0], 45.0), "{errors:?}");
+}
+
+#[test]
+fn the_largest_planes_found_in_a_clean_scene_lie_where_they_are() {
+    let frame = "room:sensor=clean_mm".parse::<Spec>().unwrap().frame().unwrap();
+    let truth = &frame.truth;
+    let mut detector = Detector::new(Ngaf { theta: 4.0, min: 1000, ..Ngaf::default() }).unwrap().sensor(frame.sensor);
+    let detection = detector.detect(frame.view()).unwrap();
+    let found = segcomp(&Contingency::new(&truth.labels, &detection.labels).unwrap(), Tolerance::default());
+    let true_plane = |label: u16| truth.planes.get(usize::from(label) - 1).map(|plane| plane.plane);
+    let plane = |label: u16| detection.planes.get(usize::from(label) - 1)?.metric.map(|metric| metric.plane);
+    let errors = plane_errors(&found.correct, true_plane, plane);
+    assert!(errors.len() == found.correct.len() && errors.len() > 3, "{errors:?}");
+    // By size; up to a fifth of a correct plane may lie elsewhere, which tilts the small ones.
+    for (pair, error) in &errors[..3] {
+        assert!(error.normal_deg < 1.0 && error.offset_m < 0.01, "{pair:?} {error:?}");
+    }
 }
 
 /// Label images of a few labels, in runs or pixel by pixel.

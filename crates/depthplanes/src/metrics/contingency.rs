@@ -98,17 +98,15 @@ impl Contingency {
 
     fn of_counts(mut counts: Vec<Count>) -> Self {
         merge(&mut counts);
-        let truth = regions(counts.iter().map(|&((truth, _), pixels)| (truth, pixels)));
-        let prediction = regions(counts.iter().map(|&((_, prediction), pixels)| (prediction, pixels)));
-        let region = |regions: &[Region], label| {
-            regions[regions.binary_search_by_key(&label, |region| region.label).expect("each label is listed")]
-        };
+        let truth = sizes(counts.iter().map(|&((truth, _), pixels)| (truth, pixels)));
+        let prediction = sizes(counts.iter().map(|&((_, prediction), pixels)| (prediction, pixels)));
+        let region = |sizes: &[u64], label: u16| Region { label, pixels: sizes[usize::from(label)] };
         let overlaps = counts.iter().map(|&((t, p), pixels)| Overlap {
             truth: region(&truth, t),
             prediction: region(&prediction, p),
             pixels,
         });
-        Contingency { overlaps: overlaps.collect(), truth, prediction }
+        Contingency { overlaps: overlaps.collect(), truth: regions(&truth), prediction: regions(&prediction) }
     }
 
     fn counts(&self) -> impl Iterator<Item = Count> {
@@ -180,10 +178,22 @@ fn merge(counts: &mut Vec<Count>) {
     });
 }
 
-fn regions(labels: impl Iterator<Item = (u16, u64)>) -> Vec<Region> {
-    let mut counts: Vec<Count> = labels.map(|(label, pixels)| ((label, 0), pixels)).collect();
-    merge(&mut counts);
-    counts.into_iter().map(|((label, _), pixels)| Region { label, pixels }).collect()
+/// The pixels of each label up to the largest.
+fn sizes(labels: impl Iterator<Item = (u16, u64)>) -> Vec<u64> {
+    let mut sizes = Vec::new();
+    for (label, pixels) in labels {
+        let at = usize::from(label);
+        if sizes.len() <= at {
+            sizes.resize(at + 1, 0);
+        }
+        sizes[at] += pixels;
+    }
+    sizes
+}
+
+fn regions(sizes: &[u64]) -> Vec<Region> {
+    let listed = (0..=u16::MAX).zip(sizes).map(|(label, &pixels)| Region { label, pixels });
+    listed.filter(|region| region.pixels > 0).collect()
 }
 
 /// Regions are sorted, so that label 0 comes first.
