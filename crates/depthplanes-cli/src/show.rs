@@ -43,7 +43,7 @@ fn parameters(report: &Report<'_>) -> String {
     let all = report.method.params.iter().zip(report.parameters);
     let told = all.filter(|(param, value)| param.source.is_some() || **value != param.default);
     let pairs: Vec<String> = told.map(|(param, value)| format!("{} {value}", param.name)).collect();
-    pairs.join(", ")
+    if pairs.is_empty() { "defaults".into() } else { pairs.join(", ") }
 }
 
 fn time(times: &Times) -> String {

@@ -127,7 +127,7 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
         missing: missing.filter(|value| storable(&image.pixels, *value)),
         pixels: image.pixels,
         valid_range: options.valid_range.or(meaning.valid_range),
-        sensor: Sensor { measure: meaning.measure, intrinsics },
+        sensor: Sensor { measure: meaning.measure, intrinsics, noise: preset.and_then(|preset| preset.noise) },
         format: format.name,
         encoding: encoding.name,
         warnings: image.warnings,

@@ -89,7 +89,7 @@ fn near_is_brighter_than_far_and_missing_is_darkest() {
 fn overlays_of_disparity_and_of_empty_and_of_flat_maps_are_drawn() {
     let mut frame = frame();
     let detection = detection();
-    frame.sensor = Sensor { measure: Measure::Disparity, intrinsics: None };
+    frame.sensor = Sensor { measure: Measure::Disparity, ..Sensor::default() };
     encode("overlay", "a.png", &Report { legend: true, ..report(&frame, &detection) });
     for value in [0, 700] {
         frame.pixels = depthplanes_io::Pixels::U16(vec![value; WIDTH * HEIGHT]);

@@ -9,6 +9,7 @@
 //! affine in inverse depth (paper, eq. 6), so the same holds there.
 
 use crate::error::{Error, Result};
+use crate::noise::SensorNoise;
 
 /// Pinhole intrinsics in pixels. `fy` (and `fx`) may be negative: ICL-NUIM's image y axis points up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -147,19 +148,21 @@ fn positive(name: &'static str, given: f64) -> Result<()> {
 }
 
 /// Everything known about how a map came about. Detection needs none of it; metric planes need
-/// both parts.
+/// measure and camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
     /// What the numbers mean.
     pub measure: Measure,
     /// The camera, if known.
     pub intrinsics: Option<Intrinsics>,
+    /// How far off a pixel is, if known; methods that need it estimate it otherwise.
+    pub noise: Option<SensorNoise>,
 }
 
 impl Default for Sensor {
     /// Depth in millimetres, camera unknown.
     fn default() -> Self {
-        Sensor { measure: Measure::Depth { metres: 0.001 }, intrinsics: None }
+        Sensor { measure: Measure::Depth { metres: 0.001 }, intrinsics: None, noise: None }
     }
 }
 

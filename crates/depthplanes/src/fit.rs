@@ -82,6 +82,32 @@ impl Moments {
         self.qq += other.qq;
     }
 
+    /// The sums of the same points about an origin that lies (du, dv, dq) before this one.
+    #[inline]
+    pub fn moved(&self, [du, dv, dq]: [f64; 3]) -> Moments {
+        let Moments { n, u, v, q, uu, uv, vv, uq, vq, qq } = *self;
+        Moments {
+            n,
+            u: u + n * du,
+            v: v + n * dv,
+            q: q + n * dq,
+            uu: uu + du * (2.0 * u + n * du),
+            uv: uv + du * v + dv * u + n * du * dv,
+            vv: vv + dv * (2.0 * v + n * dv),
+            uq: uq + du * q + dq * u + n * du * dq,
+            vq: vq + dv * q + dq * v + n * dv * dq,
+            qq: qq + dq * (2.0 * q + n * dq),
+        }
+    }
+
+    /// Sum of the squared residuals of the points about `q = a u + b v + c`.
+    #[inline]
+    pub fn squares_about(&self, [a, b, c]: [f64; 3]) -> f64 {
+        let Moments { n, u, v, q, uu, uv, vv, uq, vq, qq } = *self;
+        let linear = a * (a * uu - 2.0 * uq + 2.0 * (b * uv + c * u)) + b * (b * vv - 2.0 * vq + 2.0 * c * v);
+        (qq + linear + c * (c * n - 2.0 * q)).max(0.0)
+    }
+
     /// The least-squares plane about the same origin; `None` if the points lie on a line.
     pub fn fit(&self) -> Option<AffineFit> {
         let n = self.n;

@@ -17,6 +17,7 @@ pub mod group;
 pub mod map;
 pub mod methods;
 pub mod metrics;
+pub mod noise;
 pub mod scene;
 pub mod select;
 
@@ -25,7 +26,7 @@ pub use detection::{Detection, Plane};
 pub use detector::Detector;
 pub use error::{Error, Result};
 pub use map::{AnyView, DepthView, Pixel};
-pub use methods::Ngaf;
+pub use methods::{Ngaf, Planar};
 
 /// The README's example is a documentation test.
 #[cfg(doctest)]

@@ -4,7 +4,8 @@
 
 mod naive;
 
-use depthplanes::{DepthView, Detector, Intrinsics, Measure, Ngaf, Pixel, Sensor};
+use depthplanes::methods::Method;
+use depthplanes::{DepthView, Detector, Error, Intrinsics, Measure, Ngaf, Pixel, Planar, Sensor};
 use naive::Random;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -79,11 +80,18 @@ const EVERYTHING: Ngaf = Ngaf { theta: 3.0, min: 2, window: 5, passes: 2, max_rm
 fn sensors() -> [Sensor; 3] {
     let intrinsics = Intrinsics::new(300.0, 300.0, 80.0, 60.0).ok();
     let stereo = Measure::stereo(1.0, 300.0, 0.1, 0.0).unwrap();
-    [Sensor::default(), Sensor { intrinsics, ..Sensor::default() }, Sensor { measure: stereo, intrinsics }]
+    [
+        Sensor::default(),
+        Sensor { intrinsics, ..Sensor::default() },
+        Sensor { measure: stereo, intrinsics, ..Sensor::default() },
+    ]
 }
 
 /// `first` is the number of the first frame, so that it is in turn an empty, a simple and a noisy one.
-fn check<T: Pixel>(params: Ngaf, sensor: Sensor, (width, height): (usize, usize), first: u64) {
+fn check<T: Pixel, M>(params: M, sensor: Sensor, (width, height): (usize, usize), first: u64)
+where
+    M: TryInto<Box<dyn Method>, Error = Error> + Copy + std::fmt::Debug,
+{
     let mut random = Random(first);
     let mut detector = Detector::new(params).unwrap().sensor(sensor);
     let frames: Vec<Vec<T>> = (0..25).map(|k| frame(&mut random, first + k, width, height)).collect();
@@ -117,10 +125,23 @@ fn later_frames_allocate_nothing() {
             for (size, firsts, min) in [((120, 90), 6, 2), ((97, 33), 6, 2), ((900, 600), 1, 32)] {
                 let params = Ngaf { min, ..params };
                 for first in 0..firsts {
-                    check::<u8>(params, sensor, size, first);
-                    check::<u16>(params, sensor, size, first);
-                    check::<f32>(params, sensor, size, first);
+                    check::<u8, _>(params, sensor, size, first);
+                    check::<u16, _>(params, sensor, size, first);
+                    check::<f32, _>(params, sensor, size, first);
                 }
+            }
+        }
+    }
+}
+
+#[test]
+fn later_frames_of_planar_allocate_nothing() {
+    for sensor in sensors() {
+        for params in [Planar::default(), Planar { min: 0, noise: 2.0, confidence: 1.0, ..Planar::default() }] {
+            for (size, first) in [((120, 90), 0), ((97, 33), 1), ((400, 300), 2)] {
+                check::<u8, _>(params, sensor, size, first);
+                check::<u16, _>(params, sensor, size, first);
+                check::<f32, _>(params, sensor, size, first);
             }
         }
     }

@@ -124,9 +124,9 @@ fn sensors() -> [Sensor; 4] {
     let stereo = Measure::stereo(0.5, 90.0, 0.2, 3.0).unwrap();
     [
         Sensor::default(),
-        Sensor { measure: Measure::Depth { metres: 0.02 }, intrinsics },
-        Sensor { measure: stereo, intrinsics },
-        Sensor { measure: Measure::Disparity, intrinsics },
+        Sensor { measure: Measure::Depth { metres: 0.02 }, intrinsics, ..Sensor::default() },
+        Sensor { measure: stereo, intrinsics, ..Sensor::default() },
+        Sensor { measure: Measure::Disparity, intrinsics, ..Sensor::default() },
     ]
 }
 
@@ -402,7 +402,7 @@ fn slanted_planes_are_exact_in_disparity() {
             a * (u as f64 - 100.0) + b * (v as f64 - 75.0) + c
         };
         let map: Vec<f32> = (0..width * height).map(|at| disparity(at % width, at / width) as f32).collect();
-        let sensor = Sensor { measure, intrinsics: Some(camera) };
+        let sensor = Sensor { measure, intrinsics: Some(camera), ..Sensor::default() };
         let view = DepthView::new(&map, width, height).unwrap();
         let found = detect(Ngaf { theta: 0.11, ..Ngaf::default() }, sensor, view.into());
         assert_eq!(found.planes.len(), 2, "case {case}");
@@ -425,7 +425,7 @@ fn values_behind_infinity_leave_a_plane_without_metric_values() {
     let view = DepthView::new(&map, 30, 20).unwrap();
     let intrinsics = Intrinsics::new(100.0, 100.0, 15.0, 10.0).ok();
     let at = |offset: f64| {
-        let sensor = Sensor { measure: Measure::InverseDepth { slope: 0.1, offset }, intrinsics };
+        let sensor = Sensor { measure: Measure::InverseDepth { slope: 0.1, offset }, intrinsics, ..Sensor::default() };
         detect(Ngaf::default(), sensor, view.into()).planes[0].metric.is_some()
     };
     assert!(at(-0.09) && !at(-0.1) && !at(-5.0));

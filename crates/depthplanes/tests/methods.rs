@@ -131,8 +131,8 @@ fn sensors() -> [Sensor; 3] {
     let intrinsics = Intrinsics::new(500.0, 500.0, 20.0, 15.0).ok();
     [
         Sensor::default(),
-        Sensor { measure: Measure::Depth { metres: 0.001 }, intrinsics },
-        Sensor { measure: Measure::stereo(1.0, 500.0, 0.1, 0.0).unwrap(), intrinsics },
+        Sensor { measure: Measure::Depth { metres: 0.001 }, intrinsics, ..Sensor::default() },
+        Sensor { measure: Measure::stereo(1.0, 500.0, 0.1, 0.0).unwrap(), intrinsics, ..Sensor::default() },
     ]
 }
 

@@ -3,6 +3,7 @@
 //! A row of [`METHODS`] gives a method its flag, its keyword, its help and its contract tests.
 
 mod ngaf;
+mod planar;
 
 use crate::camera::Sensor;
 use crate::detection::Detection;
@@ -10,9 +11,10 @@ use crate::error::{Error, Result};
 use crate::map::AnyView;
 
 pub use ngaf::Ngaf;
+pub use planar::Planar;
 
 /// All methods. The first is the default.
-pub static METHODS: &[&MethodInfo] = &[&ngaf::INFO];
+pub static METHODS: &[&MethodInfo] = &[&ngaf::INFO, &planar::INFO];
 
 /// One row of [`METHODS`].
 #[derive(Debug)]

@@ -1,0 +1,232 @@
+//! planar: true planes.
+//!
+//! In: any map; a camera only for metric planes. Out: connected regions that one plane explains to
+//! within the sensor's noise. The paper's idea that a plane has one gradient (eq. 5), in the space
+//! where it is exact: inverse depth or disparity, `q = a u + b v + c`.
+
+mod assign;
+mod curved;
+mod grow;
+mod level;
+mod tiles;
+
+use super::{Job, Method, MethodInfo, Param, ParamKind};
+use crate::describe::Describer;
+use crate::detection::Detection;
+use crate::error::{Error, Result};
+use crate::group::{Grouper, LinkRule, reserve_to};
+use crate::map::{AnyView, DepthView, Pixel};
+use crate::noise::{NoiseModel, SensorNoise, Space};
+use crate::select::Selection;
+use crate::with_view;
+use assign::{Explained, Reach};
+use curved::Facets;
+use grow::Regions;
+use level::Level;
+use tiles::{Field, Layer};
+
+pub(super) static INFO: MethodInfo = MethodInfo {
+    name: "planar",
+    about: "Finds true planes: regions that one plane explains to within the sensor's noise, in inverse depth or disparity.",
+    stages: &["tiles", "grow", "assign", "group", "select", "fit", "label"],
+    params: PARAMS,
+    build: |values| {
+        INFO.check(values)?;
+        Planar::from_values(values).try_into()
+    },
+};
+
+const PARAMS: &[Param] = &[
+    Param {
+        name: "min",
+        default: 100.0,
+        min: 0.0,
+        max: u32::MAX as f64,
+        kind: ParamKind::Whole,
+        unit: "pixels",
+        meaning: "A plane has more pixels than this.",
+        source: None,
+    },
+    Param {
+        name: "noise",
+        default: 0.0,
+        min: 0.0,
+        max: f64::MAX,
+        kind: ParamKind::Real,
+        unit: "m or map units",
+        meaning: "Standard deviation of depth at range 0 in metres, of disparity in map units; with `noise-growth` 0 as well it is the preset's, or else estimated from the map.",
+        source: None,
+    },
+    Param {
+        name: "noise-growth",
+        default: 0.0,
+        min: 0.0,
+        max: f64::MAX,
+        kind: ParamKind::Real,
+        unit: "1/m",
+        meaning: "What the standard deviation of depth grows by with the square of the range; 0.0014 for a Kinect v1.",
+        source: None,
+    },
+    Param {
+        name: "confidence",
+        default: 3.0,
+        min: 0.5,
+        max: 100.0,
+        kind: ParamKind::Real,
+        unit: "standard deviations",
+        meaning: "How far from a plane its pixels may lie.",
+        source: None,
+    },
+];
+
+/// Fewest pixels of a tile that starts a region: half of it; in the second round, where the pixels of
+/// known planes are left out, a third.
+const LEAST: [f64; 2] = [8.0, 6.0];
+
+/// Parameters of the method `planar`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Planar {
+    /// A plane has strictly more pixels than this.
+    pub min: u32,
+    /// Standard deviation of a pixel: of depth at range 0, metres; of disparity, map units. If this and
+    /// `noise_growth` are 0, it is the sensor's ([`crate::Sensor::noise`]), or else estimated from each map.
+    pub noise: f64,
+    /// What the standard deviation of depth grows by with the square of the range, 1/m.
+    pub noise_growth: f64,
+    /// How far from a plane its pixels may lie, standard deviations, 0.5..=100.
+    pub confidence: f64,
+}
+
+impl Planar {
+    fn from_values(values: &[f64]) -> Self {
+        let &[min, noise, noise_growth, confidence] = values else {
+            panic!("one value for each row of PARAMS");
+        };
+        Planar { min: min as u32, noise, noise_growth, confidence }
+    }
+
+    fn values(&self) -> [f64; 4] {
+        let &Planar { min, noise, noise_growth, confidence } = self;
+        [min.into(), noise, noise_growth, confidence]
+    }
+
+    /// What the parameters say of the noise, if anything.
+    fn noise(&self, space: Space) -> Option<SensorNoise> {
+        let is_stated = self.noise > 0.0 || self.noise_growth > 0.0;
+        is_stated.then_some(match space {
+            Space::InverseDepth { .. } => SensorNoise::Depth { base: self.noise, growth: self.noise_growth },
+            Space::Value => SensorNoise::Value { sigma: self.noise },
+        })
+    }
+}
+
+impl Default for Planar {
+    fn default() -> Self {
+        Self::from_values(&INFO.defaults())
+    }
+}
+
+impl TryFrom<Planar> for Box<dyn Method> {
+    type Error = Error;
+
+    fn try_from(params: Planar) -> Result<Self> {
+        INFO.check(&params.values())?;
+        Ok(Box::new(Runner { params, ..Runner::default() }))
+    }
+}
+
+/// The method with its memory.
+#[derive(Default)]
+struct Runner {
+    params: Planar,
+    field: Field,
+    layers: [Layer; 2],
+    regions: Regions,
+    facets: Facets,
+    level: Level,
+    explained: Vec<Explained>,
+    across: Vec<u32>,
+    image: Vec<u16>,
+    grouper: Grouper,
+    selection: Selection,
+    describer: Describer,
+}
+
+impl Method for Runner {
+    fn info(&self) -> &'static MethodInfo {
+        &INFO
+    }
+
+    fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
+        with_view!(map, map => self.planar(map, job, out))
+    }
+}
+
+impl Runner {
+    fn planar<T: Pixel>(&mut self, map: DepthView<'_, T>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
+        let Runner {
+            params,
+            field,
+            layers,
+            regions,
+            facets,
+            level,
+            explained,
+            across,
+            image,
+            grouper,
+            selection,
+            describer,
+        } = self;
+        let space = Space::of(job.sensor.measure);
+        field.fill(&map, space);
+        image.clear();
+        image.resize(field.q.len(), 0);
+        layers[0].sum(field, image);
+        let tiles = layers[0].tiles.len();
+        regions.prepare(tiles);
+        facets.prepare(tiles);
+        level.prepare(tiles);
+        reserve_to(explained, 2 * tiles);
+        let stated = params.noise(space).or(job.sensor.noise);
+        let noise = stated.and_then(|noise| NoiseModel::of_sensor(space, noise, field.step));
+        let noise = noise.unwrap_or_else(|| level.estimate(&layers[0], space, field.step));
+        let confidence = params.confidence;
+        let reach = Reach { noise: &noise, confidence };
+        job.done("tiles");
+        for round in 0..layers.len() {
+            if round > 0 {
+                layers[round].sum(field, image); // what no plane explains yet
+            }
+            layers[round].expect(&noise);
+            regions.grow(&mut layers[round], LEAST[round], confidence);
+            let layers = &mut layers[..=round];
+            regions.merge(layers);
+            regions.drop_small(layers, f64::from(params.min) * 0.5)?;
+            facets.mark(layers, regions);
+            assign::drop_explained(field, layers, regions, &reach, explained);
+            assign::assign(field, layers, regions, &reach, across, image);
+        }
+        job.done("grow");
+        for id in image.iter_mut().filter(|id| **id > 0) {
+            if regions.all[usize::from(*id) - 1].is_curved {
+                *id = 0;
+            }
+        }
+        job.done("assign");
+        let ids = DepthView::new(image, map.width(), map.height())?;
+        let groups = grouper.group(&ids, &LinkRule::new(ids.validity(), 0.0)?, job.threads);
+        job.done("group");
+        selection.select(groups, params.min)?;
+        job.done("select");
+        let runs = selection.runs(groups);
+        describer.tally(&map, runs, 0, &job.sensor);
+        describer.describe(&map, runs, &job.sensor, field.valid_pixels, &mut out.planes);
+        job.done("fit");
+        selection.paint(groups, &mut out.labels);
+        (out.width, out.height) = (map.width(), map.height());
+        (out.valid_pixels, out.filled_pixels) = (field.valid_pixels, 0);
+        job.done("label");
+        Ok(())
+    }
+}
