@@ -96,7 +96,7 @@ fn run_document(path: &Path) {
 #[test]
 fn the_commands_of_the_docs_print_what_the_docs_say() {
     let _alone = DOCUMENTS.lock();
-    for document in ["docs/cli.md", "docs/ngaf.md", "README.md"] {
+    for document in ["docs/cli.md", "docs/ngaf.md", "docs/planar.md", "README.md"] {
         run_document(&root().join(document));
     }
 }
@@ -143,6 +143,7 @@ fn links_of_the_docs_lead_to_files() {
         "CHANGELOG.md",
         "docs/cli.md",
         "docs/ngaf.md",
+        "docs/planar.md",
         "docs/metrics.md",
     ] {
         let path = root().join(document);

@@ -65,6 +65,18 @@ fn the_stages_of_ngaf_look_as_the_page_shows_them() {
     check("ngaf-3-planes.png", &overlay(ngaf, &frame(filled), found));
 }
 
+#[test]
+fn the_room_of_the_page_on_planar_is_what_the_methods_find() {
+    let bench = Bench::new("pictures_of_planar");
+    let planar: &[&str] = &["--method", "planar"];
+    let ngaf: &[&str] = &["--method", "ngaf", "--theta", "20", "--min", "100"];
+    for (method, picture) in [(planar, "planar-room.png"), (ngaf, "planar-room-ngaf.png")] {
+        let given = ["detect", "scene:room:seed=2,sensor=tof,size=480x360", "--overlay", picture];
+        bench.run(&[&given, method].concat()).ok();
+        check(picture, &bench.read(picture));
+    }
+}
+
 fn overlay(method: &'static MethodInfo, frame: &Frame, detection: &Detection) -> Vec<u8> {
     let report =
         Report { source: SCENE, frame, method, parameters: &method.defaults(), detection, times: None, legend: false };
