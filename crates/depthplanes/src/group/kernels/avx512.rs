@@ -177,38 +177,15 @@ static LANE: [u16; 32] = {
     lane
 };
 
-/// For lanes 0..16 and again for 16..32 the bits up to and including the lane's own.
-static UP_TO: [u16; 32] = {
-    let mut up_to = [0; 32];
+/// For the even and for the odd of 32 pixels the bits up to and including the pixel's own, without bit 0.
+static UP_TO: [[u32; 16]; 2] = {
+    let mut up_to = [[0; 16]; 2];
     let mut i = 0;
     while i < 32 {
-        up_to[i] = ((2u32 << (i % 16)) - 1) as u16;
+        up_to[i % 2][i / 2] = ((2u64 << i) - 2) as u32;
         i += 1;
     }
     up_to
-};
-
-/// Of a double word in every lane, the byte pairs that put its lower half into lanes 0..16 and its
-/// upper half into the others.
-static OWN_HALF: [u16; 32] = {
-    let mut bytes = [0x0100; 32];
-    let mut i = 16;
-    while i < 32 {
-        bytes[i] = 0x0302;
-        i += 1;
-    }
-    bytes
-};
-
-/// The byte pairs that put its lower half into lanes 16..32, and 0 into the others.
-static LOWER_HALF: [u16; 32] = {
-    let mut bytes = [0x8080; 32];
-    let mut i = 16;
-    while i < 32 {
-        bytes[i] = 0x0100;
-        i += 1;
-    }
-    bytes
 };
 
 #[inline]
@@ -301,25 +278,24 @@ fn dense_labels(links: &Links<'_>, above: &[u32], inherited: &mut [u32], labels:
     new - new_label
 }
 
-/// The label of a pixel is the entry of the table at the number of run starts up to it, counted
-/// within 16 pixels by `vpopcntw`, and for the upper 16 those of the lower added.
+/// The label of a pixel is the entry of the table at the number of run starts up to it, counted by
+/// `vpopcntd` for even pixels and for odd ones.
 #[inline]
-#[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512bitalg,popcnt")]
+#[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vpopcntdq,popcnt")]
 fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
     assert!(labels.len() >= starts.len() * 64 + SLACK && valid.len() == starts.len());
-    // SAFETY: all three are 64 bytes.
-    let [up_to, own_half, lower_half] =
-        unsafe { [&UP_TO, &OWN_HALF, &LOWER_HALF].map(|constant| _mm512_loadu_si512(constant.as_ptr().cast())) };
+    // SAFETY: both are 64 bytes.
+    let [up_to_even, up_to_odd] =
+        unsafe { [&UP_TO[0], &UP_TO[1]].map(|constant| _mm512_loadu_si512(constant.as_ptr().cast())) };
     let mut begun = 0; // runs begun before the block
     let mut block = |valid: u32, starts: u32| {
         // The table is read from the run of the block's first pixel, which leaves 31 others to count.
         let table = begun + (starts & 1) as usize;
         begun += starts.count_ones() as usize;
-        let bits = _mm512_set1_epi32((starts & !1) as i32);
-        let index = _mm512_add_epi16(
-            _mm512_popcnt_epi16(_mm512_and_si512(_mm512_shuffle_epi8(bits, own_half), up_to)),
-            _mm512_popcnt_epi16(_mm512_shuffle_epi8(bits, lower_half)),
-        );
+        let bits = _mm512_set1_epi32(starts as i32);
+        let even = _mm512_popcnt_epi32(_mm512_and_si512(bits, up_to_even));
+        let odd = _mm512_popcnt_epi32(_mm512_and_si512(bits, up_to_odd));
+        let index = _mm512_or_si512(even, _mm512_slli_epi32::<16>(odd));
         // SAFETY: `table` is at most the pixels before the block; room for 32 more was checked above.
         let labels = unsafe { _mm512_loadu_si512(labels.as_ptr().add(table).cast()) };
         _mm512_maskz_permutexvar_epi16(valid, index, labels)
