@@ -9,7 +9,7 @@ pub(super) struct Avx512;
 kernel!(
     "avx512",
     Avx512,
-    "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi2,avx512bitalg,avx512vpopcntdq,bmi1,bmi2,popcnt,lzcnt",
+    "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi2,avx512vpopcntdq,bmi1,bmi2,popcnt,lzcnt",
     is_here
 );
 
@@ -20,7 +20,6 @@ pub(super) fn is_here() -> bool {
         && is_x86_feature_detected!("avx512dq")
         && is_x86_feature_detected!("avx512vl")
         && is_x86_feature_detected!("avx512vbmi2")
-        && is_x86_feature_detected!("avx512bitalg")
         && is_x86_feature_detected!("avx512vpopcntdq")
         && is_x86_feature_detected!("bmi1")
         && is_x86_feature_detected!("bmi2")
@@ -29,9 +28,7 @@ pub(super) fn is_here() -> bool {
 }
 
 /// Runs `work` with its code compiled for these vectors.
-#[target_feature(
-    enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi2,avx512bitalg,avx512vpopcntdq,bmi1,bmi2,popcnt,lzcnt"
-)]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi2,avx512vpopcntdq,bmi1,bmi2,popcnt,lzcnt")]
 pub(super) fn run<R>(work: impl FnOnce() -> R) -> R {
     work()
 }
@@ -224,7 +221,7 @@ fn positions([a, b]: [&[u64]; 2], count: usize, [list_a, list_b]: &mut [Vec<u16>
 fn dense_labels(links: &Links<'_>, above: &[u32], inherited: &mut [u32], labels: &mut [u32], new_label: u32) -> u32 {
     let starts_above = links.starts_above;
     let ones = |words: &[u64]| words.iter().map(|word| word.count_ones() as usize).sum::<usize>();
-    assert!(above.len() > ones(starts_above) && inherited.len() >= ones(links.contacts) + SLACK);
+    assert!(above.len() > ones(starts_above) && inherited.len() >= ones(links.marks) + SLACK);
     assert!(labels.len() >= ones(links.ends) + SLACK && links.ends.len() == starts_above.len());
     let lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     // The bits up to and including a lane's own.
@@ -233,7 +230,7 @@ fn dense_labels(links: &Links<'_>, above: &[u32], inherited: &mut [u32], labels:
     for w in 0..starts_above.len() {
         for shift in (0..64).step_by(16) {
             let starts = (starts_above[w] >> shift) as u16;
-            let contacts = (links.contacts[w] >> shift) as u16;
+            let contacts = ((links.marks[w] ^ links.orphans[w]) >> shift) as u16;
             // As in `paint_row`: the table is read from the run of the first pixel.
             let table = begun + usize::from(starts & 1);
             let bits = _mm512_and_si512(_mm512_set1_epi32(i32::from(starts & !1)), up_to);
