@@ -207,7 +207,13 @@ fn paint_strip<I: Isa>(strip: &Strip, label_of_provisional: &[u16], image: &mut 
             let runs: usize = starts.iter().map(|word| word.count_ones() as usize).sum();
             let (here, after) = provisional.split_at(runs);
             provisional = after;
-            for (label, &provisional) in labels[1..].iter_mut().zip(here) {
+            let looked_up = &mut labels[1..][..runs];
+            let (fours, rest) = looked_up.as_chunks_mut::<4>();
+            let (fours_here, rest_here) = here.as_chunks::<4>();
+            for (labels, provisional) in fours.iter_mut().zip(fours_here) {
+                *labels = provisional.map(|provisional| label_of_provisional[provisional as usize]);
+            }
+            for (label, &provisional) in rest.iter_mut().zip(rest_here) {
                 *label = label_of_provisional[provisional as usize];
             }
             I::paint_row(valid, starts, &labels, pixels);
