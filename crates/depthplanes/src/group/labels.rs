@@ -22,6 +22,8 @@ pub(super) struct Scratch {
     pub(super) up: Vec<u64>,
     /// Pixels at which two runs first touch.
     pub(super) contacts: Vec<u64>,
+    /// Pixels behind contacts that are linked to them.
+    behind: Vec<u64>,
     /// Last pixels of runs.
     pub(super) ends: Vec<u64>,
     /// Last pixels of runs without a contact.
@@ -41,7 +43,7 @@ impl Scratch {
             masks.clear();
             masks.resize(block_words + 2 * words, 0);
         }
-        for masks in [&mut self.ends, &mut self.orphans, &mut self.marks] {
+        for masks in [&mut self.behind, &mut self.ends, &mut self.orphans, &mut self.marks] {
             masks.resize(block_words, 0);
         }
         self.columns.iter_mut().for_each(|columns| reserve_to(columns, width + SLACK));
@@ -53,10 +55,10 @@ impl Scratch {
     /// marked at their ends, as orphans.
     ///
     /// A run's pixels behind its first are a block of ones in `left`. Adding a one to a block carries
-    /// through to its end, so the ones that the sum clears lie behind the contact that was added. A carry
-    /// out of a word goes on in the next if the pixel there is linked to the left.
+    /// through to its end, so the ones that the sum clears lie behind the contact that was added. The rows
+    /// are one long number: a carry out of a row is lost in the next, whose first pixel has no left link.
     #[inline(always)]
-    pub(super) fn find_contacts(&mut self, count: usize, words: usize) {
+    pub(super) fn find_contacts<I: Isa>(&mut self, count: usize, words: usize) {
         let (left_above, left) = (&self.left[..count], &self.left[words..][..count]);
         let (up_before, up) = (&self.up[words - 1..][..count], &self.up[words..][..count]);
         let contacts = &mut self.contacts[words..][..count];
@@ -64,14 +66,14 @@ impl Scratch {
             contacts[w] = up[w] & !((up[w] << 1 | up_before[w] >> 63) & left[w] & left_above[w]);
         }
         let (before, contacts) = (&self.contacts[words - 1..][..count], &self.contacts[words..][..count]);
-        let (ends, orphans, marks) = (&self.ends[..count], &mut self.orphans[..count], &mut self.marks[..count]);
-        let mut carry = false;
+        let (behind, sums) = (&mut self.behind[..count], &mut self.marks[..count]);
         for w in 0..count {
-            let behind = (contacts[w] << 1 | before[w] >> 63) & left[w];
-            let (sum, over) = left[w].overflowing_add(behind);
-            let (sum, over_too) = sum.overflowing_add(carry.into());
-            carry = over | over_too;
-            let covered = (left[w] & !sum) | behind;
+            behind[w] = (contacts[w] << 1 | before[w] >> 63) & left[w];
+        }
+        I::add(left, behind, sums);
+        let (ends, orphans, marks) = (&self.ends[..count], &mut self.orphans[..count], sums);
+        for w in 0..count {
+            let covered = (left[w] & !marks[w]) | behind[w];
             orphans[w] = ends[w] & !(contacts[w] | covered);
             marks[w] = (contacts[w] & !covered) | orphans[w];
         }

@@ -157,7 +157,7 @@ pub(super) fn scan<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>,
         let block = first..(first + block_rows).min(height);
         find_links::<I, T>(map, rule, strip, &block);
         find_runs(strip, &block);
-        strip.scratch.find_contacts(block.len() * strip.words, strip.words);
+        strip.scratch.find_contacts::<I>(block.len() * strip.words, strip.words);
         label_block::<I>(strip, &block);
     }
 }
@@ -272,7 +272,7 @@ pub(super) fn stitch<I: Isa, T: Pixel>(
         left[w] = valid[w] & !starts[w];
         left_above[w] = valid_above[w] & !starts_above[w];
     }
-    lower.scratch.find_contacts(words, words);
+    lower.scratch.find_contacts::<I>(words, words);
     for w in 0..words {
         let mut contacts = lower.scratch.contacts[words + w];
         while let Some(up_to) = next_bit(&mut contacts) {

@@ -140,6 +140,11 @@ impl Isa for Avx512 {
         unsafe { masks_f32(row, up, rule, out) }
     }
     #[inline(always)]
+    fn add(a: &[u64], b: &[u64], sums: &mut [u64]) {
+        // SAFETY: as above.
+        unsafe { add(a, b, sums) }
+    }
+    #[inline(always)]
     fn positions(masks: [&[u64]; 2], count: usize, lists: &mut [Vec<u16>; 2]) {
         // SAFETY: as above.
         unsafe { positions(masks, count, lists) }
@@ -160,6 +165,30 @@ impl Isa for Avx512 {
     fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
         // SAFETY: as above.
         unsafe { paint_row(valid, starts, labels, row) }
+    }
+}
+
+/// Adds eight words at a time. Of these the ones that overflow carry into the next, and the ones that are
+/// all ones hand a carry on: both are bits of one small number, in which a carry runs by itself.
+#[inline]
+#[target_feature(enable = "avx512f,avx512bw,avx512vl,bmi2")]
+fn add(a: &[u64], b: &[u64], sums: &mut [u64]) {
+    assert!(a.len() == sums.len() && b.len() == sums.len());
+    let ones = _mm512_set1_epi64(-1);
+    let mut carry = 0;
+    for (sums, (a, b)) in sums.chunks_mut(8).zip(a.chunks(8).zip(b.chunks(8))) {
+        let lanes = u8::MAX >> (8 - sums.len());
+        // SAFETY: the masked loads and the masked store touch only the words of the three.
+        unsafe {
+            let a = _mm512_maskz_loadu_epi64(lanes, a.as_ptr().cast());
+            let sum = _mm512_add_epi64(a, _mm512_maskz_loadu_epi64(lanes, b.as_ptr().cast()));
+            let overflows = u32::from(_mm512_cmplt_epu64_mask(sum, a));
+            let hands_on = u32::from(_mm512_cmpeq_epi64_mask(sum, ones));
+            let carries = ((overflows << 1 | carry) + hands_on) ^ hands_on;
+            let sum = _mm512_mask_sub_epi64(sum, carries as u8, sum, ones);
+            _mm512_mask_storeu_epi64(sums.as_mut_ptr().cast(), lanes, sum);
+            carry = carries >> 8;
+        }
     }
 }
 

@@ -33,6 +33,17 @@ pub trait Isa {
     /// Masks of one row of floating-point values.
     fn masks_f32(row: &[f32], up: &[f32], rule: &LinkRule<f32>, out: RowMasks<'_>);
 
+    /// Adds two numbers of many words, the lowest first. What the last word carries out is lost.
+    #[inline(always)]
+    fn add(a: &[u64], b: &[u64], sums: &mut [u64]) {
+        let mut carry = false;
+        for (sum, (a, &b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            let (of_both, over) = a.overflowing_add(b);
+            let (of_all, over_too) = of_both.overflowing_add(carry.into());
+            (*sum, carry) = (of_all, over | over_too);
+        }
+    }
+
     /// Whether there are [`Isa::dense_labels`] and [`Isa::positions`], for rows of many runs.
     const HAS_DENSE_LABELS: bool = false;
 
