@@ -146,29 +146,34 @@ fn sparse_labels(strip: &mut Strip, block: &Range<usize>, rows: &Range<usize>, n
         [&strip.scratch.marks, &strip.scratch.orphans, &strip.scratch.ends].map(|masks| &masks[at..][..count]);
     let (starts_above, before_above) =
         (&strip.starts[here - words..][..count], &strip.runs_before[here - words..][..count]);
-    let mut run = first_run;
-    for w in 0..count {
-        let mut rest = marks[w];
-        while let Some(up_to) = next_bit(&mut rest) {
-            let inherited = labels[(before_above[w] + (starts_above[w] & up_to).count_ones()) as usize];
-            let is_new = orphans[w] & up_to & !(up_to >> 1) != 0;
-            labels[run] = select_unpredictable(is_new, *new_label, inherited);
-            *new_label += u32::from(is_new);
+    let (mut run, mut next_label) = (first_run, *new_label);
+    let above = starts_above.iter().zip(before_above);
+    for ((&marks, &orphans), (starts_above, before_above)) in marks.iter().zip(orphans).zip(above) {
+        let mut rest = marks;
+        while rest != 0 {
+            let is_new = orphans & rest & rest.wrapping_neg() != 0;
+            let up_to = rest ^ (rest - 1);
+            let inherited = labels[(before_above + (starts_above & up_to).count_ones()) as usize];
+            labels[run] = select_unpredictable(is_new, next_label, inherited);
+            next_label += u32::from(is_new);
             run += 1;
+            rest &= rest - 1;
         }
     }
+    *new_label = next_label;
     // Between the ends of two runs all valid pixels are the second one's.
-    let (valid, sizes) = (&strip.valid[here..][..count], &mut strip.sizes[..]);
-    let (mut run, mut pixels, mut counted) = (first_run, 0, 0);
-    for w in 0..count {
-        let mut rest = ends[w];
-        while let Some(up_to) = next_bit(&mut rest) {
-            let up_to_end = pixels + (valid[w] & up_to).count_ones();
-            sizes[labels[run] as usize] += up_to_end - counted;
+    let (labels, sizes) = (&strip.labels[first_run..run], &mut strip.sizes[..]);
+    let (mut labels, mut pixels, mut counted) = (labels.iter(), 0, 0);
+    for (&ends, &valid) in ends.iter().zip(&strip.valid[here..][..count]) {
+        let mut rest = ends;
+        while rest != 0 {
+            let &label = labels.next().expect("as many ends as marks");
+            let up_to_end = pixels + (valid & (rest ^ (rest - 1))).count_ones();
+            sizes[label as usize] += up_to_end - counted;
             counted = up_to_end;
-            run += 1;
+            rest &= rest - 1;
         }
-        pixels += valid[w].count_ones();
+        pixels += valid.count_ones();
     }
     unite_later_contacts(strip, block, rows);
 }
