@@ -1,8 +1,9 @@
 //! The instruction sets that grouping runs on, fastest first.
 //!
 //! The algorithm stands once, in `strip.rs` and `labels.rs`; an instruction set brings two operations
-//! (masks of a row, painting of labels), perhaps two more for rows of many runs, and one function that
-//! compiles the algorithm for it. On aarch64 the portable operations are compiled with NEON, which is in its baseline.
+//! (masks of a row, painting of labels), perhaps faster addition and two more operations for rows of
+//! many runs, and one function that compiles the algorithm for it. On aarch64 the portable operations
+//! are compiled with NEON, which is in its baseline.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
