@@ -136,6 +136,22 @@ fn a_large_map_is_the_same_on_every_kernel_and_thread_count() {
 }
 
 #[test]
+fn rows_that_fill_a_block_by_themselves_match_the_flood() {
+    let mut random = Random(5);
+    for (width, height) in [(20_000, 5), (9_000, 7), (5_000, 11), (63, 600), (64, 600), (65, 600)] {
+        let map: Vec<u8> = (0..width * height)
+            .map(|at| match random.below(50) {
+                0 => 0,
+                odd => (1 + at % width / 90 + at / width / 3 + (odd < 4) as usize) as u8,
+            })
+            .collect();
+        for min in [0, 5] {
+            check(&DepthView::new(&map, width, height).unwrap(), 1.0, min, "wide or high");
+        }
+    }
+}
+
+#[test]
 fn theta_must_be_a_number_of_at_least_0() {
     let view = DepthView::new(&[1u8], 1, 1).unwrap();
     for theta in [-1.0, f64::NAN, f64::NEG_INFINITY] {

@@ -1,98 +1,89 @@
-//! Provisional labels for the runs of one row, from where they touch the runs above.
+//! Provisional labels for the runs of a block of rows, from where they touch the runs above.
 //!
-//! In: the row's links and run starts, and the labels of the row above. Out: a label for each run.
+//! In: the block's links and run starts, and the labels of the row above. Out: a label for each run.
 //! Only the first pixel of each touching pair of runs matters. A run's first such contact hands it the
 //! label above without any search, for until then it has none; the few later ones unite two labels.
 
 use super::kernels::{Isa, SLACK};
 use super::strip::{DENSE, Strip};
 use super::{forest, reserve_to};
+use std::hint::select_unpredictable;
+use std::ops::Range;
 
-/// What only a row and its neighbours need.
+/// What only a block of rows and its neighbours need, one bit a pixel.
+///
+/// `left`, `up` and `contacts` begin with the row above the block and end with the one below; the
+/// others have the block's rows only.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
-    pub(super) above: RowLinks,
-    pub(super) here: RowLinks,
-    pub(super) below: RowLinks,
+    /// Links to the left neighbour.
+    pub(super) left: Vec<u64>,
+    /// Links to the neighbour above.
+    pub(super) up: Vec<u64>,
+    /// Pixels at which two runs first touch.
+    pub(super) contacts: Vec<u64>,
+    /// Pixels behind contacts that are linked to them.
+    behind: Vec<u64>,
     /// Last pixels of runs.
     pub(super) ends: Vec<u64>,
-    /// First and last column of each run.
-    pub(super) columns: [Vec<u16>; 2],
-    /// First contacts of runs with those above.
-    pub(super) contacts: Vec<u64>,
-    /// All other contacts.
-    pub(super) later_contacts: Vec<u64>,
-    any_later_contacts: bool,
     /// Last pixels of runs without a contact.
-    orphans: Vec<u64>,
-    any_orphans: bool,
-    /// Labels handed down, in order of contacts.
+    pub(super) orphans: Vec<u64>,
+    /// One pixel of each run: its first contact, or its end if it has none.
+    pub(super) marks: Vec<u64>,
+    /// First and last column of each run of a dense row.
+    columns: [Vec<u16>; 2],
+    /// Labels handed down in a dense row, in order of contacts.
     inherited: Vec<u32>,
 }
 
-/// The links of one row, one bit a pixel, and the runs before each word.
-#[derive(Debug, Default)]
-pub(super) struct RowLinks {
-    /// To the left neighbour. One word more than the row has, which stays 0.
-    pub(super) left: Vec<u64>,
-    /// To the neighbour above.
-    pub(super) up: Vec<u64>,
-    pub(super) runs_before: Vec<u32>,
-}
-
 impl Scratch {
-    pub(super) fn prepare(&mut self, width: usize) {
+    pub(super) fn prepare(&mut self, width: usize, block_words: usize) {
         let words = width.div_ceil(64);
-        for row in [&mut self.above, &mut self.here, &mut self.below] {
-            row.left.clear();
-            row.left.resize(words + 1, 0);
-            row.up.resize(words, 0);
-            row.runs_before.resize(words, 0);
+        for masks in [&mut self.left, &mut self.up, &mut self.contacts] {
+            masks.clear();
+            masks.resize(block_words + 2 * words, 0);
         }
-        for masks in [&mut self.ends, &mut self.contacts, &mut self.later_contacts, &mut self.orphans] {
-            masks.resize(words, 0);
+        for masks in [&mut self.behind, &mut self.ends, &mut self.orphans, &mut self.marks] {
+            masks.resize(block_words, 0);
         }
         self.columns.iter_mut().for_each(|columns| reserve_to(columns, width + SLACK));
         self.inherited.resize(width + SLACK, 0);
     }
 
     /// Finds the pixels at which two runs first touch: linked upwards, and without a left neighbour in
-    /// the same two runs that is too. Of these the first of each run go to `contacts`, the others to
-    /// `later_contacts`; runs without any are marked in `orphans`, at their ends.
+    /// the same two runs that is too. Of these the first of each run is marked; runs without any are
+    /// marked at their ends, as orphans.
     ///
     /// A run's pixels behind its first are a block of ones in `left`. Adding a one to a block carries
-    /// through to its end, so the ones that the sum clears lie behind the contact that was added.
+    /// through to its end, so the ones that the sum clears lie behind the contact that was added. The rows
+    /// are one long number: a carry out of a row is lost in the next, whose first pixel has no left link.
     #[inline(always)]
-    pub(super) fn find_contacts(&mut self) {
-        let words = self.ends.len();
-        let (contacts, later) = (&mut self.contacts[..words], &mut self.later_contacts[..words]);
-        let (ends, orphans) = (&self.ends[..words], &mut self.orphans[..words]);
-        let (up, left, left_above) = (&self.here.up[..words], &self.here.left[..words], &self.above.left[..words]);
-        let mut up_left = 0;
-        for w in 0..words {
-            contacts[w] = up[w] & !((up[w] << 1 | up_left) & left[w] & left_above[w]);
-            up_left = up[w] >> 63;
+    pub(super) fn find_contacts<I: Isa>(&mut self, count: usize, words: usize) {
+        let (left_above, left) = (&self.left[..count], &self.left[words..][..count]);
+        let (up_before, up) = (&self.up[words - 1..][..count], &self.up[words..][..count]);
+        let contacts = &mut self.contacts[words..][..count];
+        for w in 0..count {
+            contacts[w] = up[w] & !((up[w] << 1 | up_before[w] >> 63) & left[w] & left_above[w]);
         }
-        // A flood reaches into the next word through the pixel there that is linked to the left.
-        let (mut reaching, mut any_later, mut any_orphans) = (0, 0, 0);
-        for w in 0..words {
-            let contact = contacts[w];
-            let behind = (contact << 1 | reaching) & left[w];
-            let covered = (left[w] & !left[w].wrapping_add(behind)) | behind;
-            reaching = (contact | covered) >> 63;
-            (contacts[w], later[w]) = (contact & !covered, contact & covered);
-            orphans[w] = ends[w] & !(contact | covered);
-            any_orphans |= orphans[w];
-            any_later |= later[w];
+        let (before, contacts) = (&self.contacts[words - 1..][..count], &self.contacts[words..][..count]);
+        let (behind, sums) = (&mut self.behind[..count], &mut self.marks[..count]);
+        for w in 0..count {
+            behind[w] = (contacts[w] << 1 | before[w] >> 63) & left[w];
         }
-        (self.any_orphans, self.any_later_contacts) = (any_orphans != 0, any_later != 0);
+        I::add(left, behind, sums);
+        let (ends, orphans, marks) = (&self.ends[..count], &mut self.orphans[..count], sums);
+        for w in 0..count {
+            let covered = (left[w] & !marks[w]) | behind[w];
+            orphans[w] = ends[w] & !(contacts[w] | covered);
+            marks[w] = (contacts[w] & !covered) | orphans[w];
+        }
     }
 }
 
 /// How the runs of a row hang together with those above.
 pub struct Links<'a> {
-    /// First contacts.
-    pub contacts: &'a [u64],
+    /// First contacts of runs, and the orphans.
+    pub marks: &'a [u64],
     /// Last pixels of runs without a contact.
     pub orphans: &'a [u64],
     /// Last pixels of runs.
@@ -101,77 +92,110 @@ pub struct Links<'a> {
     pub starts_above: &'a [u64],
 }
 
-/// Where the runs of a row start.
-struct Row<'a> {
-    starts: &'a [u64],
-    /// Runs before each word.
-    before: &'a [u32],
-}
-
-impl Row<'_> {
-    /// The run at the highest of the bits `up_to` of word w: as many as there are run starts up to it.
-    #[inline(always)]
-    fn run_at(&self, w: usize, up_to: u64) -> usize {
-        (self.before[w] + (self.starts[w] & up_to).count_ones() - 1) as usize
-    }
-}
-
-/// Labels the runs of a row.
+/// Labels the runs of a block: dense rows one by one, the rows between them together.
 #[inline(always)]
-pub(super) fn label_runs<I: Isa>(strip: &mut Strip, row: usize) {
-    let words = strip.words;
-    let (first, end) = (strip.row_first_run[row] as usize, strip.end_run);
-    let scratch = &mut strip.scratch;
-    let (labels, forest, sizes) = (&mut strip.labels[..], &mut strip.forest, &mut strip.sizes);
-    let row_above = row.saturating_sub(1);
-    let here = Row { starts: &strip.starts[row * words..][..words], before: &scratch.here.runs_before };
-    let above = Row { starts: &strip.starts[row_above * words..][..words], before: &scratch.above.runs_before };
-    let new_label = forest.len() as u32;
-    let new_labels = if I::HAS_DENSE_LABELS && row > 0 && (end - first) * DENSE > strip.width {
-        let (contacts, orphans, ends) = (&scratch.contacts, &scratch.orphans, &scratch.ends);
-        let links = Links { contacts, orphans, ends, starts_above: above.starts };
-        let (labels_above, labels_here) = labels.split_at_mut(first);
-        let labels_above = &labels_above[strip.row_first_run[row_above] as usize - 1..];
-        I::dense_labels(&links, labels_above, &mut scratch.inherited, labels_here, new_label)
-    } else {
-        sparse_labels(scratch, &here, &above, labels, new_label)
-    };
-    forest.extend(new_label..new_label + new_labels);
-    sizes.resize(forest.len(), 0);
-    for w in 0..if scratch.any_later_contacts { words } else { 0 } {
-        let mut later = scratch.later_contacts[w];
-        while let Some(up_to) = next_bit(&mut later) {
-            forest::unite(forest, labels[here.run_at(w, up_to)], labels[above.run_at(w, up_to)]);
+pub(super) fn label_block<I: Isa>(strip: &mut Strip, block: &Range<usize>) {
+    let orphans = &strip.scratch.orphans[..block.len() * strip.words];
+    let orphans: u64 = orphans.iter().map(|word| u64::from(word.count_ones())).sum();
+    let mut new_label = strip.forest.len() as u32;
+    strip.forest.extend(new_label..new_label + orphans as u32);
+    strip.sizes.resize(strip.forest.len(), 0);
+    let mut rows = block.start..block.start;
+    while rows.start < block.end {
+        while rows.end < block.end && !(I::HAS_DENSE_LABELS && strip.runs_of(rows.end).len() * DENSE > strip.width) {
+            rows.end += 1;
         }
-    }
-    let [first_columns, last_columns] = &scratch.columns;
-    for (&label, (first, last)) in labels[first..end].iter().zip(first_columns.iter().zip(last_columns)) {
-        sizes[label as usize] += u32::from(last - first) + 1;
+        if rows.is_empty() {
+            rows.end += 1;
+            dense_labels::<I>(strip, block, rows.start, &mut new_label);
+        } else {
+            sparse_labels(strip, block, &rows, &mut new_label);
+        }
+        rows.start = rows.end;
     }
 }
 
-/// Labels runs one by one; how many labels are new.
+/// Labels the runs of a row, many at a time.
 #[inline(always)]
-fn sparse_labels(scratch: &Scratch, here: &Row<'_>, above: &Row<'_>, labels: &mut [u32], new_label: u32) -> u32 {
-    let words = here.starts.len();
-    for w in 0..words {
-        let mut contacts = scratch.contacts[w];
-        while let Some(up_to) = next_bit(&mut contacts) {
-            labels[here.run_at(w, up_to)] = labels[above.run_at(w, up_to)];
+fn dense_labels<I: Isa>(strip: &mut Strip, block: &Range<usize>, row: usize, new_label: &mut u32) {
+    let (words, here, runs) = (strip.words, strip.words_of(row), strip.runs_of(row));
+    let above = here.start - words..here.start;
+    let at = (row - block.start) * words;
+    let Scratch { marks, orphans, ends, columns, inherited, .. } = &mut strip.scratch;
+    let [marks, orphans, ends] = [marks, orphans, ends].map(|masks| &masks[at..][..words]);
+    let links = Links { marks, orphans, ends, starts_above: &strip.starts[above.clone()] };
+    let (labels_above, labels_here) = strip.labels.split_at_mut(runs.start);
+    let labels_above = &labels_above[strip.runs_before[above.start] as usize..];
+    *new_label += I::dense_labels(&links, labels_above, inherited, labels_here, *new_label);
+    I::positions([&strip.starts[here], ends], runs.len(), columns);
+    let [first_columns, last_columns] = columns;
+    for (&label, (first, last)) in strip.labels[runs].iter().zip(first_columns.iter().zip(last_columns)) {
+        strip.sizes[label as usize] += u32::from(*last - *first) + 1;
+    }
+    unite_later_contacts(strip, block, &(row..row + 1));
+}
+
+/// Labels the runs of some rows of a block one by one, in the order of their marks.
+#[inline(always)]
+fn sparse_labels(strip: &mut Strip, block: &Range<usize>, rows: &Range<usize>, new_label: &mut u32) {
+    let (words, count) = (strip.words, rows.len() * strip.words);
+    let (here, at) = (strip.words_of(rows.start).start, (rows.start - block.start) * words);
+    let first_run = strip.runs_of(rows.start).start;
+    let labels = &mut strip.labels[..];
+    let [marks, orphans, ends] =
+        [&strip.scratch.marks, &strip.scratch.orphans, &strip.scratch.ends].map(|masks| &masks[at..][..count]);
+    let (starts_above, before_above) =
+        (&strip.starts[here - words..][..count], &strip.runs_before[here - words..][..count]);
+    let (mut run, mut next_label) = (first_run, *new_label);
+    let above = starts_above.iter().zip(before_above);
+    for ((&marks, &orphans), (starts_above, before_above)) in marks.iter().zip(orphans).zip(above) {
+        let mut rest = marks;
+        while rest != 0 {
+            let is_new = orphans & rest & rest.wrapping_neg() != 0;
+            let up_to = rest ^ (rest - 1);
+            let inherited = labels[(before_above + (starts_above & up_to).count_ones()) as usize];
+            labels[run] = select_unpredictable(is_new, next_label, inherited);
+            next_label += u32::from(is_new);
+            run += 1;
+            rest &= rest - 1;
         }
     }
-    let mut new_labels = 0;
-    for w in 0..if scratch.any_orphans { words } else { 0 } {
-        let mut orphans = scratch.orphans[w];
-        while let Some(up_to) = next_bit(&mut orphans) {
-            // An orphan is marked at its end. A run that reaches into the word ends in it first.
-            let ended_before = here.before[w] - (scratch.here.left[w] & 1) as u32;
-            let run = ended_before + (scratch.ends[w] & up_to).count_ones() - 1;
-            labels[run as usize] = new_label + new_labels;
-            new_labels += 1;
+    *new_label = next_label;
+    // Between the ends of two runs all valid pixels are the second one's.
+    let (labels, sizes) = (&strip.labels[first_run..run], &mut strip.sizes[..]);
+    let (mut labels, mut pixels, mut counted) = (labels.iter(), 0, 0);
+    for (&ends, &valid) in ends.iter().zip(&strip.valid[here..][..count]) {
+        let mut rest = ends;
+        while rest != 0 {
+            let &label = labels.next().expect("as many ends as marks");
+            let up_to_end = pixels + (valid & (rest ^ (rest - 1))).count_ones();
+            sizes[label as usize] += up_to_end - counted;
+            counted = up_to_end;
+            rest &= rest - 1;
+        }
+        pixels += valid.count_ones();
+    }
+    unite_later_contacts(strip, block, rows);
+}
+
+/// Unites the labels of runs that touch each other at other than a run's first contact.
+#[inline(always)]
+fn unite_later_contacts(strip: &mut Strip, block: &Range<usize>, rows: &Range<usize>) {
+    let (words, count) = (strip.words, rows.len() * strip.words);
+    let (here, at) = (strip.words_of(rows.start).start, (rows.start - block.start) * words);
+    let (contacts, marks) = (&strip.scratch.contacts[at + words..][..count], &strip.scratch.marks[at..][..count]);
+    for (eight, (contacts, marks)) in (0..).step_by(8).zip(contacts.chunks(8).zip(marks.chunks(8))) {
+        if contacts.iter().zip(marks).fold(0, |any, (contacts, marks)| any | contacts & !marks) == 0 {
+            continue;
+        }
+        for (w, (contacts, marks)) in (here + eight..).zip(contacts.iter().zip(marks)) {
+            let mut later = contacts & !marks;
+            while let Some(up_to) = next_bit(&mut later) {
+                let [here, above] = [w, w - words].map(|w| strip.labels[strip.run_at(w, up_to)]);
+                forest::unite(&mut strip.forest, here, above);
+            }
         }
     }
-    new_labels
 }
 
 /// Takes the lowest set bit away; the bits up to and including it.

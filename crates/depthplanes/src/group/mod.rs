@@ -236,7 +236,7 @@ impl Groups {
 
     /// How many runs there are.
     pub fn run_count(&self) -> usize {
-        self.strips.iter().map(Strip::run_count).sum()
+        self.strips.iter().map(|strip| strip.run_count).sum()
     }
 
     /// Calls `visit` for each run in raster order.

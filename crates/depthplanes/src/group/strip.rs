@@ -5,7 +5,7 @@
 //! u / 64, so "left" is one bit lower.
 
 use super::kernels::{Isa, SLACK};
-use super::labels::{RowLinks, Scratch, label_runs, next_bit};
+use super::labels::{Scratch, label_block, next_bit};
 use super::{LinkRule, forest, reserve_to};
 use crate::map::{DepthView, Pixel};
 use std::ops::Range;
@@ -14,7 +14,7 @@ use std::ops::Range;
 pub struct RowMasks<'a> {
     /// Pixels that are valid.
     pub valid: &'a mut [u64],
-    /// Pixels within theta of their left neighbour, valid or not; nothing certain of column 0.
+    /// Pixels within theta of their left neighbour, valid or not; column 0 has none.
     pub close_left: &'a mut [u64],
     /// Pixels within theta of the neighbour above, valid or not.
     pub close_up: &'a mut [u64],
@@ -24,11 +24,18 @@ pub struct RowMasks<'a> {
 /// time begins to pay; measured at 6, 10 and 16, which differ by at most 6 % on any of six frames.
 pub(super) const DENSE: usize = 6;
 
+/// Words of the rows that are looked at together, about: few enough for their masks to stay in the
+/// nearest cache, many enough for loops over them to be long.
+const BLOCK_WORDS: usize = 256;
+
 /// What a strip knows after [`scan`].
 ///
 /// As in any two-pass labelling, a run takes the provisional label of the first run that it touches
 /// above, or a new one if it touches none; labels that meet later are united in a forest. Only new
 /// labels cost an element of the forest, so it stays small even where noise makes many runs.
+///
+/// A row without pixels stands before the first in `valid`, `starts` and `runs_before`, so that every
+/// row has one above it and every word one before it.
 #[derive(Debug, Default)]
 pub(super) struct Strip {
     /// Its rows in the map.
@@ -41,13 +48,13 @@ pub(super) struct Strip {
     pub(super) valid: Vec<u64>,
     /// First pixels of runs, `words` a row.
     pub(super) starts: Vec<u64>,
-    /// For each row the first of its runs, counted within the strip from 1; one more at the end.
-    pub(super) row_first_run: Vec<u32>,
+    /// Runs of the strip that start before each word, `words` a row.
+    pub(super) runs_before: Vec<u32>,
     /// Provisional label of each run, counted from 1, and [`SLACK`] elements more to read and write.
     /// It only grows; what lies behind the last run is left from other maps.
     pub(super) labels: Vec<u32>,
-    /// One more than the last run.
-    pub(super) end_run: usize,
+    /// How many runs there are.
+    pub(super) run_count: usize,
     /// Forest over the provisional labels.
     pub(super) forest: Vec<u32>,
     /// Pixels of each provisional label.
@@ -70,25 +77,44 @@ impl Strip {
         let height = rows.len();
         (self.rows, self.width, self.words) = (rows, width, words);
         for masks in [&mut self.valid, &mut self.starts] {
-            masks.resize(height * words, 0);
+            masks.resize((1 + height) * words, 0);
+            masks[..words].fill(0);
         }
-        reserve_to(&mut self.row_first_run, height + 1);
+        self.runs_before.resize((1 + height) * words, 0);
+        self.runs_before[..words].fill(0);
         let most_labels = 1 + height * width + SLACK;
         self.labels.reserve(most_labels.saturating_sub(self.labels.len()));
         for per_label in [&mut self.forest, &mut self.sizes] {
             reserve_to(per_label, height * width);
         }
-        self.scratch.prepare(width);
+        self.scratch.prepare(width, BLOCK_WORDS.max(words));
     }
 
-    /// How many runs there are.
-    pub(super) fn run_count(&self) -> usize {
-        self.end_run - 1
+    /// Rows that are looked at together.
+    fn block_rows(&self) -> usize {
+        (BLOCK_WORDS / self.words).max(1)
+    }
+
+    /// The words of a row, counted from 0 within the strip.
+    pub(super) fn words_of(&self, row: usize) -> Range<usize> {
+        (row + 1) * self.words..(row + 2) * self.words
+    }
+
+    /// The runs of a row, counted from 1 within the strip.
+    pub(super) fn runs_of(&self, row: usize) -> Range<usize> {
+        let words = self.words_of(row);
+        1 + self.runs_before[words.start] as usize..1 + self.run_at(words.end - 1, u64::MAX)
+    }
+
+    /// The run at the highest of the bits `up_to` of a word: as many as there are run starts up to it.
+    #[inline(always)]
+    pub(super) fn run_at(&self, word: usize, up_to: u64) -> usize {
+        (self.runs_before[word] + (self.starts[word] & up_to).count_ones()) as usize
     }
 
     /// Provisional label of each run in raster order.
     pub(super) fn labels(&self) -> &[u32] {
-        &self.labels[1..self.end_run]
+        &self.labels[1..=self.run_count]
     }
 
     /// Calls `visit` for each run in raster order with its row, first and last column, and provisional
@@ -97,8 +123,7 @@ impl Strip {
     pub(super) fn each_run(&self, mut visit: impl FnMut(usize, u32, u32, u32)) {
         let mut labels = self.labels().iter();
         for (row, v) in self.rows.clone().enumerate() {
-            let words = row * self.words..(row + 1) * self.words;
-            let (valid, starts) = (&self.valid[words.clone()], &self.starts[words]);
+            let (valid, starts) = (&self.valid[self.words_of(row)], &self.starts[self.words_of(row)]);
             let left = |w: usize| if w < valid.len() { valid[w] & !starts[w] } else { 0 };
             let mut open = 0; // first column of the run that reaches into the word
             for w in 0..valid.len() {
@@ -123,105 +148,103 @@ impl Strip {
     }
 }
 
-/// Labels a strip, row by row: its links, its runs, their contacts, and a label for each. Links are
-/// known one row ahead, to tell pixels without any.
+/// Labels a strip, block by block of rows: their links, their runs, their contacts, and a label for each.
 #[inline(always)]
 pub(super) fn scan<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>, strip: &mut Strip) {
-    (strip.valid_pixels, strip.singles_left_out) = (0, 0);
-    strip.end_run = 1;
-    row_links::<I, T>(map, rule, strip, 0);
-    for row in 0..strip.rows.len() {
-        let Scratch { above, here, below, .. } = &mut strip.scratch;
-        std::mem::swap(above, here);
-        std::mem::swap(here, below);
-        if row + 1 < strip.rows.len() {
-            row_links::<I, T>(map, rule, strip, row + 1);
-        }
-        row_runs::<I>(strip, row);
-        strip.scratch.find_contacts();
-        label_runs::<I>(strip, row);
+    (strip.valid_pixels, strip.singles_left_out, strip.run_count) = (0, 0, 0);
+    let (height, block_rows) = (strip.rows.len(), strip.block_rows());
+    for first in (0..height).step_by(block_rows) {
+        let block = first..(first + block_rows).min(height);
+        find_links::<I, T>(map, rule, strip, &block);
+        find_runs(strip, &block);
+        strip.scratch.find_contacts::<I>(block.len() * strip.words, strip.words);
+        label_block::<I>(strip, &block);
     }
-    strip.row_first_run.push(strip.end_run as u32);
 }
 
-/// Links of a row to the left and up, left in the scratch as those of the row below. The strip's first
-/// row has none upwards.
+/// Links of a block's rows, and of the row below, which tells pixels without any. Those of the block's
+/// first row are known from the block above.
 #[inline(always)]
-fn row_links<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>, strip: &mut Strip, row: usize) {
-    let (words, v) = (strip.words, strip.rows.start + row);
-    let (above, here) = strip.valid[row.saturating_sub(1) * words..(row + 1) * words].split_at_mut(row.min(1) * words);
-    let RowLinks { left, up, .. } = &mut strip.scratch.below;
-    let left = &mut left[..words];
-    let masks = RowMasks { valid: here, close_left: left, close_up: up };
-    T::masks::<I>(map.row(v), map.row(v.saturating_sub(1)), rule, masks);
+fn find_links<I: Isa, T: Pixel>(map: &DepthView<'_, T>, rule: &LinkRule<T>, strip: &mut Strip, block: &Range<usize>) {
+    let (words, block_rows) = (strip.words, strip.block_rows());
+    let Scratch { left, up, .. } = &mut strip.scratch;
+    let known = block.start + usize::from(block.start > 0);
+    if block.start > 0 {
+        // The last two rows of the block above are the first two here.
+        let last_two = block_rows * words..(block_rows + 2) * words;
+        left.copy_within(last_two.clone(), 0);
+        up.copy_within(last_two, 0);
+    }
+    let rows = known..(block.end + 1).min(strip.rows.len());
+    let (start, at) = ((known + 1) * words, (known + 1 - block.start) * words);
+    let (left, up) = (&mut left[at..][..rows.len() * words], &mut up[at..][..rows.len() * words]);
+    let valid = &mut strip.valid[start..][..rows.len() * words];
+    let rows_of_masks = valid.chunks_exact_mut(words).zip(left.chunks_exact_mut(words).zip(up.chunks_exact_mut(words)));
+    for (row, (valid, (close_left, close_up))) in rows.clone().zip(rows_of_masks) {
+        let v = strip.rows.start + row;
+        T::masks::<I>(map.row(v), map.row(v.saturating_sub(1)), rule, RowMasks { valid, close_left, close_up });
+    }
     // Both sides of a link are valid. Above the strip there is nothing.
-    let (mut pixels, mut valid_left) = (0, 0);
-    for w in 0..words {
-        let above = if row == 0 { 0 } else { above[w] };
-        left[w] &= here[w] & (here[w] << 1 | valid_left);
-        up[w] &= here[w] & above;
-        valid_left = here[w] >> 63;
-        pixels += here[w].count_ones();
+    let all = &strip.valid[..start + left.len()];
+    let (here, before, above) = (&all[start..], &all[start - 1..], &all[start - words..]);
+    let (left, up) = (&mut left[..here.len()], &mut up[..here.len()]);
+    let mut pixels = 0;
+    for w in 0..here.len() {
+        left[w] &= here[w] & (here[w] << 1 | before[w] >> 63);
+        up[w] &= here[w] & above[w];
+        pixels += u64::from(here[w].count_ones());
     }
     strip.valid_pixels += pixels as usize;
 }
 
-/// Lists the runs of a row: a run starts at a valid pixel that is not linked to its left, and ends
-/// before the next pixel that is not.
+/// Runs of a block: one starts at each valid pixel that is not linked to its left, and ends before the
+/// next pixel that is not.
 #[inline(always)]
-fn row_runs<I: Isa>(strip: &mut Strip, row: usize) {
-    let words = strip.words;
-    let first = strip.end_run as u32;
-    let valid = &mut strip.valid[row * words..][..words];
-    let starts = &mut strip.starts[row * words..][..words];
-    let Scratch { here, below, ends, columns, .. } = &mut strip.scratch;
-    let mut end = start_runs(valid, &here.left, starts, ends, &mut here.runs_before, first);
-    let is_inner = row > 0 && row + 1 < strip.rows.len(); // outer rows have links to other strips
-    if strip.leaves_out_singles && is_inner && (end - first) as usize * DENSE > strip.width {
-        let before = end;
-        leave_out_singles(valid, starts, ends, &here.up, &below.up);
-        end = start_runs(valid, &here.left, starts, ends, &mut here.runs_before, first);
-        strip.singles_left_out += (before - end) as usize;
-    }
-    strip.row_first_run.push(first);
-    strip.end_run = end as usize;
-    if strip.labels.len() < strip.end_run + SLACK {
-        strip.labels.resize(strip.end_run + SLACK, 0);
-    }
-    I::positions([starts, ends], (end - first) as usize, columns);
-}
-
-/// Where runs start and end, and how many start before each word, from `first` on; one more than the
-/// last run. `left` has a word 0 more.
-#[inline(always)]
-fn start_runs(
-    valid: &[u64],
-    left: &[u64],
-    starts: &mut [u64],
-    ends: &mut [u64],
-    before: &mut [u32],
-    first: u32,
-) -> u32 {
-    let words = valid.len();
-    let (left, starts, ends, before) =
-        (&left[..words + 1], &mut starts[..words], &mut ends[..words], &mut before[..words]);
-    let mut end = first;
-    for w in 0..words {
+fn find_runs(strip: &mut Strip, block: &Range<usize>) {
+    let (words, count) = (strip.words, block.len() * strip.words);
+    let at = (block.start + 1) * words;
+    let (valid, starts) = (&mut strip.valid[at..][..count], &mut strip.starts[at..][..count]);
+    let Scratch { left, ends, .. } = &mut strip.scratch;
+    let (left, next, ends) = (&left[words..][..count], &left[words + 1..][..count], &mut ends[..count]);
+    for w in 0..count {
         starts[w] = valid[w] & !left[w];
-        ends[w] = valid[w] & !(left[w] >> 1 | left[w + 1] << 63);
-        before[w] = end;
-        end += starts[w].count_ones();
+        ends[w] = valid[w] & !(left[w] >> 1 | next[w] << 63);
     }
-    end
+    if strip.leaves_out_singles {
+        leave_out_singles(strip, block);
+    }
+    let (starts, before) = (&strip.starts[at..][..count], &mut strip.runs_before[at..][..count]);
+    let mut runs = strip.run_count as u32;
+    for w in 0..count {
+        before[w] = runs;
+        runs += starts[w].count_ones();
+    }
+    strip.run_count = runs as usize;
+    if strip.labels.len() < 1 + strip.run_count + SLACK {
+        strip.labels.resize(1 + strip.run_count + SLACK, 0);
+    }
 }
 
 /// Takes pixels that are a run of their own and linked neither up nor down for missing: each is a
-/// group that nobody asked for, and noise makes many.
+/// group that nobody asked for, and noise makes many. Outer rows have links to other strips.
 #[inline(always)]
-fn leave_out_singles(valid: &mut [u64], starts: &[u64], ends: &[u64], up: &[u64], up_below: &[u64]) {
-    for w in 0..valid.len() {
-        valid[w] &= !(starts[w] & ends[w]) | up[w] | up_below[w];
+fn leave_out_singles(strip: &mut Strip, block: &Range<usize>) {
+    let words = strip.words;
+    let inner = block.start.max(1)..block.end.min(strip.rows.len() - 1).max(1);
+    let (at, from, count) = ((inner.start + 1) * words, (inner.start - block.start) * words, inner.len() * words);
+    let (valid, starts) = (&mut strip.valid[at..][..count], &mut strip.starts[at..][..count]);
+    let Scratch { up, ends, .. } = &mut strip.scratch;
+    let (ends, up, below) =
+        (&mut ends[from..][..count], &up[from + words..][..count], &up[from + 2 * words..][..count]);
+    let mut singles = 0;
+    for w in 0..count {
+        let single = starts[w] & ends[w] & !(up[w] | below[w]);
+        valid[w] ^= single;
+        starts[w] ^= single;
+        ends[w] ^= single;
+        singles += u64::from(single.count_ones());
     }
+    strip.singles_left_out += singles as usize;
 }
 
 /// Unites the labels on both sides of the border between two strips, in the forest of all strips.
@@ -233,28 +256,29 @@ pub(super) fn stitch<I: Isa, T: Pixel>(
     lower: &mut Strip,
     forest: &mut [u32],
 ) {
-    let (words, v, last_row) = (lower.words, lower.rows.start, upper.rows.len() - 1);
-    let (starts, starts_above) = (&lower.starts[..words], &upper.starts[last_row * words..]);
-    let (valid, valid_above) = (&lower.valid[..words], &upper.valid[last_row * words..]);
-    let Scratch { above, here, ends: unused, .. } = &mut lower.scratch;
-    let masks = RowMasks { valid: unused, close_left: &mut here.left[..words], close_up: &mut here.up };
+    let (words, v) = (lower.words, lower.rows.start);
+    let (here, there) = (lower.words_of(0), upper.words_of(upper.rows.len() - 1));
+    let (starts, starts_above) = (&lower.starts[here.clone()], &upper.starts[there.clone()]);
+    let (valid, valid_above) = (&lower.valid[here.clone()], &upper.valid[there.clone()]);
+    let (here, there) = (here.start, there.start);
+    // The last row of the upper strip goes to where the row above a block stands.
+    let Scratch { left, up, ends: unused, .. } = &mut lower.scratch;
+    let (left_above, left) = left.split_at_mut(words);
+    let (left, up) = (&mut left[..words], &mut up[words..][..words]);
+    let masks = RowMasks { valid: &mut unused[..words], close_left: left, close_up: up };
     T::masks::<I>(map.row(v), map.row(v - 1), rule, masks);
     for w in 0..words {
-        here.up[w] &= valid[w] & valid_above[w];
-        here.left[w] = valid[w] & !starts[w];
-        above.left[w] = valid_above[w] & !starts_above[w];
+        up[w] &= valid[w] & valid_above[w];
+        left[w] = valid[w] & !starts[w];
+        left_above[w] = valid_above[w] & !starts_above[w];
     }
-    lower.scratch.find_contacts();
-    let (mut runs, mut runs_above) = (0, upper.row_first_run[last_row] as usize - 1);
+    lower.scratch.find_contacts::<I>(words, words);
     for w in 0..words {
-        let mut contacts = lower.scratch.contacts[w] | lower.scratch.later_contacts[w];
+        let mut contacts = lower.scratch.contacts[words + w];
         while let Some(up_to) = next_bit(&mut contacts) {
-            let run = |before: usize, starts: u64| before + (starts & up_to).count_ones() as usize;
-            let here = lower.labels[run(runs, starts[w])] + lower.first_label as u32;
-            let there = upper.labels[run(runs_above, starts_above[w])] + upper.first_label as u32;
+            let here = lower.labels[lower.run_at(here + w, up_to)] + lower.first_label as u32;
+            let there = upper.labels[upper.run_at(there + w, up_to)] + upper.first_label as u32;
             forest::unite(forest, here, there);
         }
-        runs += starts[w].count_ones() as usize;
-        runs_above += starts_above[w].count_ones() as usize;
     }
 }

@@ -146,10 +146,6 @@ impl Isa for Avx2 {
         unsafe { masks_f32(row, up, rule, out) }
     }
     #[inline(always)]
-    fn positions(masks: [&[u64]; 2], count: usize, lists: &mut [Vec<u16>; 2]) {
-        Portable::positions(masks, count, lists);
-    }
-    #[inline(always)]
     fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
         Portable::paint_row(valid, starts, labels, row);
     }

@@ -9,7 +9,7 @@ pub(super) struct Avx512;
 kernel!(
     "avx512",
     Avx512,
-    "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi2,avx512bitalg,avx512vpopcntdq,bmi1,bmi2,popcnt,lzcnt",
+    "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi2,avx512vpopcntdq,bmi1,bmi2,popcnt,lzcnt",
     is_here
 );
 
@@ -20,7 +20,6 @@ pub(super) fn is_here() -> bool {
         && is_x86_feature_detected!("avx512dq")
         && is_x86_feature_detected!("avx512vl")
         && is_x86_feature_detected!("avx512vbmi2")
-        && is_x86_feature_detected!("avx512bitalg")
         && is_x86_feature_detected!("avx512vpopcntdq")
         && is_x86_feature_detected!("bmi1")
         && is_x86_feature_detected!("bmi2")
@@ -29,9 +28,7 @@ pub(super) fn is_here() -> bool {
 }
 
 /// Runs `work` with its code compiled for these vectors.
-#[target_feature(
-    enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi2,avx512bitalg,avx512vpopcntdq,bmi1,bmi2,popcnt,lzcnt"
-)]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi2,avx512vpopcntdq,bmi1,bmi2,popcnt,lzcnt")]
 pub(super) fn run<R>(work: impl FnOnce() -> R) -> R {
     work()
 }
@@ -143,6 +140,11 @@ impl Isa for Avx512 {
         unsafe { masks_f32(row, up, rule, out) }
     }
     #[inline(always)]
+    fn add(a: &[u64], b: &[u64], sums: &mut [u64]) {
+        // SAFETY: as above.
+        unsafe { add(a, b, sums) }
+    }
+    #[inline(always)]
     fn positions(masks: [&[u64]; 2], count: usize, lists: &mut [Vec<u16>; 2]) {
         // SAFETY: as above.
         unsafe { positions(masks, count, lists) }
@@ -166,6 +168,30 @@ impl Isa for Avx512 {
     }
 }
 
+/// Adds eight words at a time. Of these the ones that overflow carry into the next, and the ones that are
+/// all ones hand a carry on: both are bits of one small number, in which a carry runs by itself.
+#[inline]
+#[target_feature(enable = "avx512f,avx512bw,avx512vl,bmi2")]
+fn add(a: &[u64], b: &[u64], sums: &mut [u64]) {
+    assert!(a.len() == sums.len() && b.len() == sums.len());
+    let ones = _mm512_set1_epi64(-1);
+    let mut carry = 0;
+    for (sums, (a, b)) in sums.chunks_mut(8).zip(a.chunks(8).zip(b.chunks(8))) {
+        let lanes = u8::MAX >> (8 - sums.len());
+        // SAFETY: the masked loads and the masked store touch only the words of the three.
+        unsafe {
+            let a = _mm512_maskz_loadu_epi64(lanes, a.as_ptr().cast());
+            let sum = _mm512_add_epi64(a, _mm512_maskz_loadu_epi64(lanes, b.as_ptr().cast()));
+            let overflows = u32::from(_mm512_cmplt_epu64_mask(sum, a));
+            let hands_on = u32::from(_mm512_cmpeq_epi64_mask(sum, ones));
+            let carries = ((overflows << 1 | carry) + hands_on) ^ hands_on;
+            let sum = _mm512_mask_sub_epi64(sum, carries as u8, sum, ones);
+            _mm512_mask_storeu_epi64(sums.as_mut_ptr().cast(), lanes, sum);
+            carry = carries >> 8;
+        }
+    }
+}
+
 /// 0, 1, .. 31.
 static LANE: [u16; 32] = {
     let mut lane = [0; 32];
@@ -177,38 +203,15 @@ static LANE: [u16; 32] = {
     lane
 };
 
-/// For lanes 0..16 and again for 16..32 the bits up to and including the lane's own.
-static UP_TO: [u16; 32] = {
-    let mut up_to = [0; 32];
+/// For the even and for the odd of 32 pixels the bits up to and including the pixel's own, without bit 0.
+static UP_TO: [[u32; 16]; 2] = {
+    let mut up_to = [[0; 16]; 2];
     let mut i = 0;
     while i < 32 {
-        up_to[i] = ((2u32 << (i % 16)) - 1) as u16;
+        up_to[i % 2][i / 2] = ((2u64 << i) - 2) as u32;
         i += 1;
     }
     up_to
-};
-
-/// Of a double word in every lane, the byte pairs that put its lower half into lanes 0..16 and its
-/// upper half into the others.
-static OWN_HALF: [u16; 32] = {
-    let mut bytes = [0x0100; 32];
-    let mut i = 16;
-    while i < 32 {
-        bytes[i] = 0x0302;
-        i += 1;
-    }
-    bytes
-};
-
-/// The byte pairs that put its lower half into lanes 16..32, and 0 into the others.
-static LOWER_HALF: [u16; 32] = {
-    let mut bytes = [0x8080; 32];
-    let mut i = 16;
-    while i < 32 {
-        bytes[i] = 0x0100;
-        i += 1;
-    }
-    bytes
 };
 
 #[inline]
@@ -247,7 +250,7 @@ fn positions([a, b]: [&[u64]; 2], count: usize, [list_a, list_b]: &mut [Vec<u16>
 fn dense_labels(links: &Links<'_>, above: &[u32], inherited: &mut [u32], labels: &mut [u32], new_label: u32) -> u32 {
     let starts_above = links.starts_above;
     let ones = |words: &[u64]| words.iter().map(|word| word.count_ones() as usize).sum::<usize>();
-    assert!(above.len() > ones(starts_above) && inherited.len() >= ones(links.contacts) + SLACK);
+    assert!(above.len() > ones(starts_above) && inherited.len() >= ones(links.marks) + SLACK);
     assert!(labels.len() >= ones(links.ends) + SLACK && links.ends.len() == starts_above.len());
     let lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     // The bits up to and including a lane's own.
@@ -256,7 +259,7 @@ fn dense_labels(links: &Links<'_>, above: &[u32], inherited: &mut [u32], labels:
     for w in 0..starts_above.len() {
         for shift in (0..64).step_by(16) {
             let starts = (starts_above[w] >> shift) as u16;
-            let contacts = (links.contacts[w] >> shift) as u16;
+            let contacts = ((links.marks[w] ^ links.orphans[w]) >> shift) as u16;
             // As in `paint_row`: the table is read from the run of the first pixel.
             let table = begun + usize::from(starts & 1);
             let bits = _mm512_and_si512(_mm512_set1_epi32(i32::from(starts & !1)), up_to);
@@ -301,25 +304,24 @@ fn dense_labels(links: &Links<'_>, above: &[u32], inherited: &mut [u32], labels:
     new - new_label
 }
 
-/// The label of a pixel is the entry of the table at the number of run starts up to it, counted
-/// within 16 pixels by `vpopcntw`, and for the upper 16 those of the lower added.
+/// The label of a pixel is the entry of the table at the number of run starts up to it, counted by
+/// `vpopcntd` for even pixels and for odd ones.
 #[inline]
-#[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512bitalg,popcnt")]
+#[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vpopcntdq,popcnt")]
 fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
     assert!(labels.len() >= starts.len() * 64 + SLACK && valid.len() == starts.len());
-    // SAFETY: all three are 64 bytes.
-    let [up_to, own_half, lower_half] =
-        unsafe { [&UP_TO, &OWN_HALF, &LOWER_HALF].map(|constant| _mm512_loadu_si512(constant.as_ptr().cast())) };
+    // SAFETY: both are 64 bytes.
+    let [up_to_even, up_to_odd] =
+        unsafe { [&UP_TO[0], &UP_TO[1]].map(|constant| _mm512_loadu_si512(constant.as_ptr().cast())) };
     let mut begun = 0; // runs begun before the block
     let mut block = |valid: u32, starts: u32| {
         // The table is read from the run of the block's first pixel, which leaves 31 others to count.
         let table = begun + (starts & 1) as usize;
         begun += starts.count_ones() as usize;
-        let bits = _mm512_set1_epi32((starts & !1) as i32);
-        let index = _mm512_add_epi16(
-            _mm512_popcnt_epi16(_mm512_and_si512(_mm512_shuffle_epi8(bits, own_half), up_to)),
-            _mm512_popcnt_epi16(_mm512_shuffle_epi8(bits, lower_half)),
-        );
+        let bits = _mm512_set1_epi32(starts as i32);
+        let even = _mm512_popcnt_epi32(_mm512_and_si512(bits, up_to_even));
+        let odd = _mm512_popcnt_epi32(_mm512_and_si512(bits, up_to_odd));
+        let index = _mm512_or_si512(even, _mm512_slli_epi32::<16>(odd));
         // SAFETY: `table` is at most the pixels before the block; room for 32 more was checked above.
         let labels = unsafe { _mm512_loadu_si512(labels.as_ptr().add(table).cast()) };
         _mm512_maskz_permutexvar_epi16(valid, index, labels)

@@ -1,8 +1,9 @@
 //! The instruction sets that grouping runs on, fastest first.
 //!
-//! The algorithm stands once, in `strip.rs`; an instruction set brings three operations (masks of a
-//! row, positions of set bits, painting of labels) and one function that compiles the algorithm for
-//! it. On aarch64 the portable operations are compiled with NEON, which is in its baseline.
+//! The algorithm stands once, in `strip.rs` and `labels.rs`; an instruction set brings two operations
+//! (masks of a row, painting of labels), perhaps faster addition and two more operations for rows of
+//! many runs, and one function that compiles the algorithm for it. On aarch64 the portable operations
+//! are compiled with NEON, which is in its baseline.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -33,12 +34,25 @@ pub trait Isa {
     /// Masks of one row of floating-point values.
     fn masks_f32(row: &[f32], up: &[f32], rule: &LinkRule<f32>, out: RowMasks<'_>);
 
+    /// Adds two numbers of many words, the lowest first. What the last word carries out is lost.
+    #[inline(always)]
+    fn add(a: &[u64], b: &[u64], sums: &mut [u64]) {
+        let mut carry = false;
+        for (sum, (a, &b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            let (of_both, over) = a.overflowing_add(b);
+            let (of_all, over_too) = of_both.overflowing_add(carry.into());
+            (*sum, carry) = (of_all, over | over_too);
+        }
+    }
+
+    /// Whether there are [`Isa::dense_labels`] and [`Isa::positions`], for rows of many runs.
+    const HAS_DENSE_LABELS: bool = false;
+
     /// Lists the positions of the set bits of two masks that have `count` each. The lists have room for
     /// them and [`SLACK`] to spare.
-    fn positions(masks: [&[u64]; 2], count: usize, lists: &mut [Vec<u16>; 2]);
-
-    /// Whether [`Isa::dense_labels`] is worth calling for rows of many runs.
-    const HAS_DENSE_LABELS: bool = false;
+    fn positions(_masks: [&[u64]; 2], _count: usize, _lists: &mut [Vec<u16>; 2]) {
+        unreachable!("only called where HAS_DENSE_LABELS says so")
+    }
 
     /// Labels the runs of a row, many at a time; how many labels are new. `above[0]` stands before the
     /// label of the first run above; `labels` begins with the row's first run; both have [`SLACK`] to
@@ -199,13 +213,19 @@ fn paint_strip<I: Isa>(strip: &Strip, label_of_provisional: &[u16], image: &mut 
     let mut provisional = strip.labels();
     let mut labels = [0; 1 + BLOCK * 64 + SLACK];
     for (row, pixels) in image.chunks_exact_mut(strip.width).enumerate() {
-        let words = row * strip.words..(row + 1) * strip.words;
+        let words = strip.words_of(row);
         let (valid, starts) = (strip.valid[words.clone()].chunks(BLOCK), strip.starts[words].chunks(BLOCK));
         for ((valid, starts), pixels) in valid.zip(starts).zip(pixels.chunks_mut(BLOCK * 64)) {
             let runs: usize = starts.iter().map(|word| word.count_ones() as usize).sum();
             let (here, after) = provisional.split_at(runs);
             provisional = after;
-            for (label, &provisional) in labels[1..].iter_mut().zip(here) {
+            let looked_up = &mut labels[1..][..runs];
+            let (fours, rest) = looked_up.as_chunks_mut::<4>();
+            let (fours_here, rest_here) = here.as_chunks::<4>();
+            for (labels, provisional) in fours.iter_mut().zip(fours_here) {
+                *labels = provisional.map(|provisional| label_of_provisional[provisional as usize]);
+            }
+            for (label, &provisional) in rest.iter_mut().zip(rest_here) {
                 *label = label_of_provisional[provisional as usize];
             }
             I::paint_row(valid, starts, &labels, pixels);

@@ -26,28 +26,6 @@ impl Isa for Portable {
     }
 
     #[inline(always)]
-    fn positions(masks: [&[u64]; 2], count: usize, lists: &mut [Vec<u16>; 2]) {
-        for (mask, list) in masks.into_iter().zip(lists) {
-            let mut end = 0;
-            list.clear();
-            list.resize(count + 4, 0);
-            for (first, &word) in (0u32..).step_by(64).zip(mask) {
-                let (mut rest, mut at) = (word, end);
-                // Four at a time, the surplus being overwritten, spares a branch for each.
-                while rest != 0 {
-                    for position in &mut list[at..at + 4] {
-                        *position = (first + rest.trailing_zeros()) as u16;
-                        rest &= rest.wrapping_sub(1);
-                    }
-                    at += 4;
-                }
-                end += word.count_ones() as usize;
-            }
-            list.truncate(count);
-        }
-    }
-
-    #[inline(always)]
     fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
         let mut begun = 0;
         for (w, pixels) in row.chunks_mut(64).enumerate() {

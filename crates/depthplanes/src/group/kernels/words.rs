@@ -26,7 +26,7 @@ pub(super) unsafe fn words<T: Pixel>(
         above[..width].copy_from_slice(up);
         let pixels = here[1..].as_ptr();
         out.valid[0] = valid(pixels);
-        out.close_left[0] = close(pixels, here.as_ptr());
+        out.close_left[0] = close(pixels, here.as_ptr()) & !1; // column 0 has no left neighbour
         out.close_up[0] = close(pixels, above.as_ptr());
         return;
     }
