@@ -205,12 +205,10 @@ fn assign_inside(
 /// Labels the pixels of a tile with several regions around it.
 fn assign_tile(field: &Field, layers: &[Layer], regions: &Regions, reach: &Reach<'_>, at: usize, image: &mut [u16]) {
     let around = Around::new(layers, at);
-    if around.count > 0 {
-        each_pixel(field, layers[0].columns, at, |place, point| {
-            let best = nearest(around.ids(), regions, point, reach.squared(point));
-            image[place] = best.map_or(0, |region| region as u16 + 1);
-        });
-    }
+    each_pixel(field, layers[0].columns, at, |place, point| {
+        let best = nearest(around.ids(), regions, point, reach.squared(point));
+        image[place] = best.map_or(0, |region| region as u16 + 1);
+    });
 }
 
 /// The plane among `around` that a pixel lies on, if the square of its distance is at most `most`.

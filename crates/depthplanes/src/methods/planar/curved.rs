@@ -18,10 +18,10 @@ const LEAST: usize = 15;
 const ENOUGH: f64 = 12.0;
 /// Largest mean square, in variances of a pixel, by which tile means may miss a quadratic that explains them.
 const SMOOTH: f64 = 0.12;
+/// The same for a small region beside one that is known to be curved.
+const LOOSE: f64 = 0.4;
 /// Variances by which the quadratic has to explain both better than their two planes do: three deviations.
 const GAIN: f64 = 9.0;
-/// The same for a region beside one that is known to be curved.
-const LOOSE: f64 = 0.4;
 
 /// A quadratic fitted to tile means by least squares: normal equations and their solution.
 #[derive(Clone, Debug, Default)]

@@ -11,6 +11,7 @@ mod level;
 mod tiles;
 
 use super::{Job, Method, MethodInfo, Param, ParamKind};
+use crate::camera::Sensor;
 use crate::describe::Describer;
 use crate::detection::Detection;
 use crate::error::{Error, Result};
@@ -28,7 +29,7 @@ use tiles::{Field, Layer};
 pub(super) static INFO: MethodInfo = MethodInfo {
     name: "planar",
     about: "Finds true planes: regions that one plane explains to within the sensor's noise, in inverse depth or disparity.",
-    stages: &["tiles", "grow", "assign", "group", "select", "fit", "label"],
+    stages: &["tiles", "regions", "group", "select", "fit", "label"],
     params: PARAMS,
     build: |values| {
         INFO.check(values)?;
@@ -112,7 +113,7 @@ impl Planar {
 
     /// What the parameters say of the noise, if anything.
     fn noise(&self, space: Space) -> Option<SensorNoise> {
-        let is_stated = self.noise > 0.0 || self.noise_growth > 0.0;
+        let is_stated = self.noise > 0.0 || (space != Space::Value && self.noise_growth > 0.0);
         is_stated.then_some(match space {
             Space::InverseDepth { .. } => SensorNoise::Depth { base: self.noise, growth: self.noise_growth },
             Space::Value => SensorNoise::Value { sigma: self.noise },
@@ -164,56 +165,14 @@ impl Method for Runner {
 
 impl Runner {
     fn planar<T: Pixel>(&mut self, map: DepthView<'_, T>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        let Runner {
-            params,
-            field,
-            layers,
-            regions,
-            facets,
-            level,
-            explained,
-            across,
-            image,
-            grouper,
-            selection,
-            describer,
-        } = self;
-        let space = Space::of(job.sensor.measure);
-        field.fill(&map, space);
-        image.clear();
-        image.resize(field.q.len(), 0);
-        layers[0].sum(field, image);
-        let tiles = layers[0].tiles.len();
-        regions.prepare(tiles);
-        facets.prepare(tiles);
-        level.prepare(tiles);
-        reserve_to(explained, 2 * tiles);
-        let stated = params.noise(space).or(job.sensor.noise);
-        let noise = stated.and_then(|noise| NoiseModel::of_sensor(space, noise, field.step));
-        let noise = noise.unwrap_or_else(|| level.estimate(&layers[0], space, field.step));
-        let confidence = params.confidence;
-        let reach = Reach { noise: &noise, confidence };
+        let noise = self.sum_tiles(&map, &job.sensor);
         job.done("tiles");
-        for round in 0..layers.len() {
-            if round > 0 {
-                layers[round].sum(field, image); // what no plane explains yet
-            }
-            layers[round].expect(&noise);
-            regions.grow(&mut layers[round], LEAST[round], confidence);
-            let layers = &mut layers[..=round];
-            regions.merge(layers);
-            regions.drop_small(layers, f64::from(params.min) * 0.5)?;
-            facets.mark(layers, regions);
-            assign::drop_explained(field, layers, regions, &reach, explained);
-            assign::assign(field, layers, regions, &reach, across, image);
+        for round in 0..self.layers.len() {
+            self.find_regions(round, &noise)?;
         }
-        job.done("grow");
-        for id in image.iter_mut().filter(|id| **id > 0) {
-            if regions.all[usize::from(*id) - 1].is_curved {
-                *id = 0;
-            }
-        }
-        job.done("assign");
+        self.leave_out_curved();
+        job.done("regions");
+        let Runner { params, field, image, grouper, selection, describer, .. } = self;
         let ids = DepthView::new(image, map.width(), map.height())?;
         let groups = grouper.group(&ids, &LinkRule::new(ids.validity(), 0.0)?, job.threads);
         job.done("group");
@@ -228,5 +187,49 @@ impl Runner {
         (out.valid_pixels, out.filled_pixels) = (field.valid_pixels, 0);
         job.done("label");
         Ok(())
+    }
+
+    /// The map in the space where planes are affine, its tiles, and the noise to expect.
+    fn sum_tiles<T: Pixel>(&mut self, map: &DepthView<'_, T>, sensor: &Sensor) -> NoiseModel {
+        let Runner { params, field, layers, regions, facets, level, explained, image, .. } = self;
+        let space = Space::of(sensor.measure);
+        field.fill(map, space);
+        image.clear();
+        image.resize(field.q.len(), 0);
+        layers[0].sum(field, image);
+        let tiles = layers[0].tiles.len();
+        regions.prepare(tiles);
+        facets.prepare(tiles);
+        level.prepare(tiles);
+        reserve_to(explained, 2 * tiles);
+        let stated = params.noise(space).or(sensor.noise);
+        let noise = stated.and_then(|noise| NoiseModel::of_sensor(space, noise, field.step));
+        noise.unwrap_or_else(|| level.estimate(&layers[0], space, field.step))
+    }
+
+    /// One round of growth, over the pixels that no plane explains yet.
+    fn find_regions(&mut self, round: usize, noise: &NoiseModel) -> Result<()> {
+        let Runner { params, field, layers, regions, facets, explained, across, image, .. } = self;
+        let reach = Reach { noise, confidence: params.confidence };
+        if round > 0 {
+            layers[round].sum(field, image);
+        }
+        layers[round].expect(noise);
+        regions.grow(&mut layers[round], LEAST[round], params.confidence);
+        let layers = &mut layers[..=round];
+        regions.merge(layers);
+        regions.drop_small(layers, f64::from(params.min) * 0.5)?;
+        facets.mark(layers, regions);
+        assign::drop_explained(field, layers, regions, &reach, explained);
+        assign::assign(field, layers, regions, &reach, across, image);
+        Ok(())
+    }
+
+    fn leave_out_curved(&mut self) {
+        for id in self.image.iter_mut().filter(|id| **id > 0) {
+            if self.regions.all[usize::from(*id) - 1].is_curved {
+                *id = 0;
+            }
+        }
     }
 }

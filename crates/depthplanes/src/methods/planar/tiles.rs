@@ -44,7 +44,8 @@ impl Field {
     fn value_step<T: Pixel>(&mut self, map: &DepthView<'_, T>) -> f64 {
         self.seen.clear();
         self.seen.resize(1 << 16, false);
-        for &value in map.rows().flatten() {
+        let validity = map.validity();
+        for &value in map.rows().flatten().filter(|value| validity.holds(**value)) {
             self.seen[value.into() as usize] = true;
         }
         let occur = || (1..self.seen.len()).filter(|&value| self.seen[value]);
