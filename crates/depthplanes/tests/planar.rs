@@ -41,12 +41,12 @@ fn pairs(frame: &SceneFrame, found: &Detection) -> Contingency {
     )
 }
 
-/// Share of the curved pixels that some plane covers.
-fn cover_of_curved(truth: &Truth, found: &Detection) -> f64 {
+/// The curved pixels that some plane covers.
+fn covered_of_curved(truth: &Truth, found: &Detection) -> usize {
     let is_curved = |surface: u32| surface > 0 && truth.curved[surface as usize - 1];
     let covered =
         truth.surfaces.iter().zip(&found.labels).filter(|(surface, label)| is_curved(**surface) && **label > 0);
-    covered.count() as f64 / truth.curved_pixels() as f64
+    covered.count()
 }
 
 #[test]
@@ -70,20 +70,22 @@ fn the_three_planes_of_a_corner_are_found_with_their_equations() {
 
 #[test]
 fn rooms_of_boxes_balls_and_columns_are_found_as_they_are() {
-    // What was measured, with a little room; without noise a ball's facets are small and some remain.
+    // Seeds that the method was not tuned on. Without noise a ball's facets are small and some remain.
     for (sensor, noise, least, most_cover) in [
-        ("clean_mm", None, 0.84, 0.2),
-        ("kinect", Some(SensorNoise::Depth { base: 0.0, growth: 1.425e-3 }), 0.84, 0.1),
-        ("tof", None, 0.82, 0.1),
+        ("clean_mm", None, 0.87, 0.1),
+        ("kinect", Some(SensorNoise::Depth { base: 0.0, growth: 1.425e-3 }), 0.87, 0.1),
+        ("tof", None, 0.88, 0.1),
     ] {
-        let (mut f, mut cover, seeds) = (0.0, 0.0, 6);
-        for seed in 1..=seeds {
+        let (mut f, mut covered, mut curved, seeds) = (0.0, 0, 0, 20);
+        for seed in 101..=100 + seeds {
             let mut frame = scene(&format!("random:seed={seed},sensor={sensor}"));
             frame.sensor.noise = noise;
             let found = detect(Planar::default(), &frame);
             f += evops(&pairs(&frame, &found)).f_score / f64::from(seeds);
-            cover += cover_of_curved(&frame.truth, &found) / f64::from(seeds);
+            covered += covered_of_curved(&frame.truth, &found);
+            curved += frame.truth.curved_pixels();
         }
+        let cover = covered as f64 / curved as f64;
         println!("{sensor}: F {f:.3}, {:.1} % of the curved pixels covered", 100.0 * cover);
         assert!(f >= least, "{sensor}: F {f}");
         assert!(cover < most_cover, "{sensor}: {cover} of the curved pixels covered");
