@@ -1,6 +1,6 @@
 //! What a sensor's error is at a given range.
 //!
-//! In: two figures of the sensor. Out: the standard deviation of one pixel in the space where planes
+//! In: what is known of the sensor ([`SensorNoise`]) and the steps that its values come in. Out: the standard deviation of one pixel in the space where planes
 //! are affine ([`Space`]): inverse depth for depth maps, the value itself for all others. Structured
 //! light and stereo err by a constant there, time of flight by a constant in depth; both parts add.
 

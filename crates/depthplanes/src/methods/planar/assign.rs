@@ -169,10 +169,10 @@ pub(super) fn assign(
 fn find_uniform(layers: &[Layer], across: &mut Vec<u32>) {
     across.clear();
     let columns = layers[0].columns;
-    for row in layers[0].region.chunks(columns).enumerate().map(|(row, _)| row * columns..(row + 1) * columns) {
+    for first in (0..layers[0].region.len()).step_by(columns) {
         across.extend((0..columns).map(|column| {
-            let beside = row.start + column.saturating_sub(REACH)..row.start + (column + REACH + 1).min(columns);
-            let id = layers[0].region[row.start + column];
+            let beside = first + column.saturating_sub(REACH)..first + (column + REACH + 1).min(columns);
+            let id = layers[0].region[first + column];
             let alike = layers[0].region[beside.clone()].iter().all(|&other| other == id);
             let alone = layers[1..].iter().all(|layer| layer.region[beside.clone()].iter().all(|&other| other == NONE));
             if alike && alone { id } else { NONE }

@@ -3,7 +3,8 @@
 //! In: regions of tiles. Out: which of them are curved. Growth cuts a ball or a column into facets, each
 //! flat to within the noise. Two signs tell them. A region's own tile means bow: a quadratic explains more
 //! of them than chance would. And across a joint of two facets one quadratic runs on smoothly, while the
-//! crease of two planes leaves it far off: the best parabola through a roof of height h misses it by h / 4.
+//! crease of two planes leaves it far off: the best
+//! parabola through a roof misses its ridge by 3/16 of the height.
 
 use super::grow::{Region, Regions};
 use super::tiles::{Layer, NONE, SIDE, Tile};

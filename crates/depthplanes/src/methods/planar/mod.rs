@@ -65,7 +65,7 @@ const PARAMS: &[Param] = &[
         max: f64::MAX,
         kind: ParamKind::Real,
         unit: "1/m",
-        meaning: "What the standard deviation of depth grows by with the square of the range; 0.0014 for a Kinect v1.",
+        meaning: "What the standard deviation of depth grows by with the square of the range, 0.0014 for a Kinect v1; not used for disparity.",
         source: None,
     },
     Param {
