@@ -52,7 +52,7 @@ impl SensorPreset {
 const KINECT: SensorNoise = SensorNoise::Depth { base: 0.0, growth: 1.425e-3 };
 
 /// Scanners of ABW's kind: about one of the steps of 1.26 to 1.29 mm that its maps show. Between 1.0 and 1.4 mm
-/// the count of planes found there hardly changes.
+/// the share of planes found there changes by 3 in 100.
 const SCANNER: SensorNoise = SensorNoise::Depth { base: 1.2e-3, growth: 0.0 };
 
 /// All presets.
