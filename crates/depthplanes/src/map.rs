@@ -102,6 +102,9 @@ pub trait Pixel:
     /// Nearest value of this type, clamped to its range.
     fn from_f64(value: f64) -> Self;
 
+    /// The value in single precision, exactly.
+    fn to_f32(self) -> f32;
+
     /// Wraps a view of this type.
     fn any(view: DepthView<'_, Self>) -> AnyView<'_>;
 }
@@ -115,6 +118,10 @@ macro_rules! integer_pixel {
             const IS_INTEGER: bool = true;
             fn from_f64(value: f64) -> Self {
                 value.round() as $t
+            }
+            #[inline(always)]
+            fn to_f32(self) -> f32 {
+                self.into()
             }
             fn any(view: DepthView<'_, Self>) -> AnyView<'_> {
                 AnyView::$variant(view)
@@ -132,6 +139,10 @@ impl Pixel for f32 {
     const IS_INTEGER: bool = false;
     fn from_f64(value: f64) -> Self {
         value as f32
+    }
+    #[inline(always)]
+    fn to_f32(self) -> f32 {
+        self
     }
     fn any(view: DepthView<'_, Self>) -> AnyView<'_> {
         AnyView::F32(view)

@@ -1,51 +1,152 @@
 //! Stage "assign": every pixel goes to the plane that it lies on.
 //!
-//! In: the map in q, the regions of its tiles. Out: a region image, 0 = none, else region + 1. Inside a
-//! region nothing is to be decided. Along its border each pixel is held against the planes of the tiles
-//! around it; where two planes meet at a crease, both explain the pixels near it, and the line
-//! where they meet, which is known exactly, decides.
+//! In: the map in q, the regions of its tiles. Out: a region image, 0 = none, else region + 1. Pixels are looked at in
+//! blocks of 8 x 8. Where all tiles around are of one region nothing is to be decided. Elsewhere each pixel is held
+//! against the planes of the tiles around it; where two planes meet at a crease, both explain the
+//! pixels near it, and the line where they meet, which is known exactly, decides.
 
-use super::grow::{Region, Regions};
-use super::tiles::{Field, Layer, NONE, SIDE};
+use super::field::Field;
+use super::grow::Region;
+use super::planes::Planes;
+use super::tiles::{Grid, NONE, SIDE};
 use crate::group::vectorised;
-use crate::noise::NoiseModel;
 use std::ops::Range;
 
-/// How far around a tile planes are looked for, in tiles.
-const REACH: usize = 2;
 /// How much further from its plane a pixel may lie where no other plane is near, as a factor.
 const INSIDE: f64 = 2.0;
-/// A region goes if more than this share of its pixels lies on larger planes around it.
-const EXPLAINED: f64 = 0.6;
-/// Most planes that a tile's pixels are held against.
+/// Most planes that a block's pixels are held against.
 const MOST: usize = 12;
+/// Columns and rows of a block.
+const BLOCK: usize = 2 * SIDE;
+/// Pixels of a block.
+const PIXELS: usize = BLOCK * BLOCK;
+/// A block's pixels, row by row.
+type Pixels<T> = [T; PIXELS];
 
-/// The regions of the tiles around one.
-struct Around {
+/// Labels every pixel. `grids`: the tiles, and the blocks with the region that their tiles agree on.
+pub(super) fn assign(field: &Field, grids: [&Grid; 2], planes: &Planes<'_>, image: &mut [u16]) {
+    let rows = image.chunks_exact_mut(BLOCK * field.stride).zip(field.q.chunks_exact(BLOCK * field.stride));
+    let mut scratch = Scratch::default();
+    for (row, (image, q)) in rows.enumerate() {
+        vectorised(
+            #[inline(always)]
+            || assign_row(field.stride, grids, planes, row, q, &mut scratch, image),
+        );
+    }
+}
+
+#[inline(always)]
+fn assign_row(
+    stride: usize,
+    [tiles, blocks]: [&Grid; 2],
+    planes: &Planes<'_>,
+    row: usize,
+    q: &[f32],
+    scratch: &mut Scratch,
+    image: &mut [u16],
+) {
+    let rows = row.saturating_sub(1)..(row + 2).min(blocks.rows);
+    let part = |row: usize| &blocks.region[row * blocks.columns..][..blocks.columns];
+    let own = part(row);
+    let is_alike = |column: usize| {
+        let id = own[column];
+        let columns = column.saturating_sub(1)..(column + 2).min(blocks.columns);
+        id != NONE && rows.clone().all(|row| part(row)[columns.clone()].iter().all(|&other| other == id))
+    };
+    let mut column = 0;
+    while column < blocks.columns {
+        let id = own[column];
+        if is_alike(column) {
+            let most = (column + STRETCH).min(blocks.columns);
+            let end = (column + 1..most).find(|&next| own[next] != id || !is_alike(next)).unwrap_or(most);
+            label_inside(stride, planes, id, column..end, row, q, image);
+            column = end;
+        } else {
+            let near = Near::new([tiles, blocks], column, row);
+            let at = column * BLOCK;
+            if near.count > 0 {
+                let mut block =
+                    Block { middle: [column, row].map(|place| (place * BLOCK) as f64 + HALF), q: [0.0; PIXELS] };
+                for v in 0..BLOCK {
+                    block.q[v * BLOCK..][..BLOCK].copy_from_slice(&q[v * stride + at..][..BLOCK]);
+                }
+                block.label(near.ids(), planes, scratch);
+                for v in 0..BLOCK {
+                    image[v * stride + at..][..BLOCK].copy_from_slice(&scratch.labels[v * BLOCK..][..BLOCK]);
+                }
+            } else {
+                (0..BLOCK).for_each(|v| image[v * stride + at..][..BLOCK].fill(0));
+            }
+            column += 1;
+        }
+    }
+}
+
+/// Labels a stretch of blocks that have one region around them.
+#[inline(always)]
+fn label_inside(
+    stride: usize,
+    planes: &Planes<'_>,
+    id: u32,
+    columns: Range<usize>,
+    row: usize,
+    q: &[f32],
+    image: &mut [u16],
+) {
+    let (region, label) = (planes.region(id), planes.label(id));
+    let (first, end) = (columns.start * BLOCK, columns.end * BLOCK);
+    let middle = region.at((first + end - 1) as f64 / 2.0, (row * BLOCK) as f64 + HALF);
+    let most = (INSIDE * INSIDE * planes.reach(middle)) as f32;
+    let a = region.abc[0] as f32;
+    for v in 0..BLOCK {
+        let part = v * stride + first..v * stride + end;
+        let c = region.at(first as f64, (row * BLOCK + v) as f64) as f32;
+        for ((&q, label_here), &du) in q[part.clone()].iter().zip(&mut image[part]).zip(&NUMBERS) {
+            let off = q - (a * du + c);
+            *label_here = if off * off <= most { label } else { 0 }; // not for NaN
+        }
+    }
+}
+
+/// Most blocks that are labelled at a time; the noise is taken to be the same in all of them.
+const STRETCH: usize = 8;
+
+/// 0, 1, ..
+const NUMBERS: [f32; STRETCH * BLOCK] = {
+    let mut numbers = [0.0; STRETCH * BLOCK];
+    let mut at = 0;
+    while at < numbers.len() {
+        numbers[at] = at as f32;
+        at += 1;
+    }
+    numbers
+};
+
+/// The regions of the tiles of a block and of those up to two tiles around it.
+struct Near {
     ids: [u32; MOST],
     count: usize,
 }
 
-impl Around {
-    fn new(layers: &[Layer], at: usize) -> Self {
-        let (columns, rows) = (layers[0].columns, layers[0].rows);
-        let (column, row) = (at % columns, at / columns);
-        let mut around = Around { ids: [NONE; MOST], count: 0 };
-        let (left, right) = (column.saturating_sub(REACH), (column + REACH + 1).min(columns));
-        let mut last = NONE;
-        for y in row.saturating_sub(REACH)..(row + REACH + 1).min(rows) {
-            for layer in layers {
-                for &id in &layer.region[y * columns + left..y * columns + right] {
-                    if id != last {
-                        around.include(id);
-                        last = id;
-                    }
+impl Near {
+    #[inline(always)]
+    fn new([tiles, blocks]: [&Grid; 2], column: usize, row: usize) -> Self {
+        let mut near = Near { ids: [NONE; MOST], count: 0 };
+        for y in row.saturating_sub(1)..(row + 2).min(blocks.rows) {
+            for x in column.saturating_sub(1)..(column + 2).min(blocks.columns) {
+                match blocks.region[y * blocks.columns + x] {
+                    NONE => [0, 1].into_iter().for_each(|below| {
+                        let first = (2 * y + below) * tiles.columns + 2 * x;
+                        tiles.region[first..first + 2].iter().for_each(|&id| near.include(id));
+                    }),
+                    id => near.include(id),
                 }
             }
         }
-        around
+        near
     }
 
+    #[inline(always)]
     fn include(&mut self, id: u32) {
         if id != NONE && self.count < MOST && !self.ids().contains(&id) {
             self.ids[self.count] = id;
@@ -58,189 +159,164 @@ impl Around {
     }
 }
 
-/// Calls `visit` for each valid pixel of a tile with its place and its (u, v, q).
-fn each_pixel(field: &Field, columns: usize, at: usize, mut visit: impl FnMut(usize, [f64; 3])) {
-    let (column, row) = (at % columns, at / columns);
-    for v in row * SIDE..((row + 1) * SIDE).min(field.height) {
-        for u in column * SIDE..((column + 1) * SIDE).min(field.width) {
-            let place = v * field.width + u;
-            let q = field.q[place];
-            if !q.is_nan() {
-                visit(place, [u as f64, v as f64, q.into()]);
-            }
-        }
-    }
+/// A block's pixels.
+struct Block {
+    middle: [f64; 2],
+    q: Pixels<f32>,
 }
 
-/// Leaves out regions whose pixels mostly lie on larger planes around them: tiles across a crease
-/// make a strip that is flat to within the noise and no surface. `counts` is memory to work in.
-pub(super) fn drop_explained(
-    field: &Field,
-    layers: &mut [Layer],
-    regions: &Regions,
-    reach: &Reach<'_>,
-    counts: &mut Vec<Explained>,
-) {
-    counts.clear();
-    counts.resize(regions.all.len(), Explained::default());
-    for (at, tile, id) in layers.iter().flat_map(Layer::placed) {
-        let (own, count) = (&regions.all[id as usize], &mut counts[id as usize]);
-        let around = Around::new(layers, at);
-        let is_larger = |other: &Region| other.sums.n > 2.0 * own.sums.n && !other.is_curved;
-        let larger = around.ids().iter().map(|&other| &regions.all[other as usize]).filter(|other| is_larger(other));
-        if own.is_curved || larger.clone().next().is_none() {
-            count.pixels += tile.sums.n as u32;
-            continue;
-        }
-        each_pixel(field, layers[0].columns, at, |_, point| {
-            let most = reach.squared(point);
-            if own.squared_distance(point) <= most {
-                count.pixels += 1;
-                count.by_others += u32::from(larger.clone().any(|other| other.squared_distance(point) <= most));
-            }
-        });
-    }
-    for region in layers.iter_mut().flat_map(|layer| &mut layer.region).filter(|region| **region != NONE) {
-        let Explained { pixels, by_others } = counts[*region as usize];
-        if f64::from(by_others) > EXPLAINED * f64::from(pixels) {
-            *region = NONE;
-        }
-    }
-}
-
-/// A region's pixels, and how many of them larger planes explain.
+/// A plane that some pixels of a block lie on, about the block's middle.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Explained {
-    pixels: u32,
-    by_others: u32,
+struct Local {
+    id: u32,
+    a: f32,
+    b: f32,
+    c: f32,
+    /// Square of the largest distance of its pixels.
+    most: f32,
 }
 
-/// How far from a plane its pixels may lie.
-pub(super) struct Reach<'a> {
-    pub(super) noise: &'a NoiseModel,
-    /// In standard deviations of the noise.
-    pub(super) confidence: f64,
+/// Memory for one block.
+#[derive(Debug)]
+struct Scratch {
+    planes: [Local; MOST],
+    /// For each plane the pixels' squared distances in units of `most`; infinite beyond.
+    squares: [Pixels<f32>; MOST],
+    /// How many other planes go before it.
+    beaten: [Pixels<f32>; MOST],
+    labels: Pixels<u16>,
 }
 
-impl Reach<'_> {
-    /// Square of the largest distance at a pixel, in q.
-    fn squared(&self, [_, _, q]: [f64; 3]) -> f64 {
-        self.confidence * self.confidence * self.noise.variance(q)
+impl Default for Scratch {
+    fn default() -> Self {
+        let nothing = [[0.0; PIXELS]; MOST];
+        Scratch { planes: [Local::default(); MOST], squares: nothing, beaten: nothing, labels: [0; PIXELS] }
     }
 }
 
-/// Labels every pixel. `across` is memory to work in.
-pub(super) fn assign(
-    field: &Field,
-    layers: &[Layer],
-    regions: &Regions,
-    reach: &Reach<'_>,
-    across: &mut Vec<u32>,
-    image: &mut [u16],
-) {
-    let (columns, rows) = (layers[0].columns, layers[0].rows);
-    find_uniform(layers, across);
-    for row in 0..rows {
-        // The region of all tiles around a tile, where there is but one.
-        let inside = |column: usize| {
-            let mut ids =
-                (row.saturating_sub(REACH)..(row + REACH + 1).min(rows)).map(|y| across[y * columns + column]);
-            let first = ids.next().expect("the row itself");
-            if ids.all(|id| id == first) { first } else { NONE }
-        };
-        let mut column = 0;
-        while column < columns {
-            let id = inside(column);
-            let end = (column + 1..columns).find(|&next| id == NONE || inside(next) != id).unwrap_or(columns);
-            if id == NONE {
-                assign_tile(field, layers, regions, reach, row * columns + column, image);
-            } else {
-                vectorised(
-                    #[inline(always)]
-                    || assign_inside(field, &regions.all[id as usize], id as u16 + 1, reach, column..end, row, image),
-                );
-            }
-            column = end;
-        }
+/// Half of a block's columns, up to its middle.
+const HALF: f64 = (BLOCK - 1) as f64 / 2.0;
+/// Columns and rows of a block's pixels from its middle.
+const DU: Pixels<f32> = offsets(1);
+const DV: Pixels<f32> = offsets(BLOCK);
+
+const fn offsets(step: usize) -> Pixels<f32> {
+    let mut out = [0.0; PIXELS];
+    let mut at = 0;
+    while at < PIXELS {
+        out[at] = (at / step % BLOCK) as f32 - (BLOCK - 1) as f32 / 2.0;
+        at += 1;
     }
+    out
 }
 
-/// For each tile the region of the tiles beside it and itself in all layers, if there is but one; else [`NONE`].
-fn find_uniform(layers: &[Layer], across: &mut Vec<u32>) {
-    across.clear();
-    let columns = layers[0].columns;
-    for first in (0..layers[0].region.len()).step_by(columns) {
-        across.extend((0..columns).map(|column| {
-            let beside = first + column.saturating_sub(REACH)..first + (column + REACH + 1).min(columns);
-            let id = layers[0].region[first + column];
-            let alike = layers[0].region[beside.clone()].iter().all(|&other| other == id);
-            let alone = layers[1..].iter().all(|layer| layer.region[beside.clone()].iter().all(|&other| other == NONE));
-            if alike && alone { id } else { NONE }
-        }));
-    }
-}
-
-/// Labels the pixels of a stretch of tiles in one row that have one region around them.
-#[inline(always)]
-fn assign_inside(
-    field: &Field,
-    region: &Region,
-    label: u16,
-    reach: &Reach<'_>,
-    columns: Range<usize>,
-    row: usize,
-    image: &mut [u16],
-) {
-    let (first, end) = (columns.start * SIDE, (columns.end * SIDE).min(field.width));
-    for v in row * SIDE..((row + 1) * SIDE).min(field.height) {
-        let part = v * field.width + first..v * field.width + end;
-        for ((u, &q), label_here) in (first as u32..).zip(&field.q[part.clone()]).zip(&mut image[part]) {
-            let point = [f64::from(u), v as f64, f64::from(q)];
-            let is_near = region.squared_distance(point) <= INSIDE * INSIDE * reach.squared(point); // not for NaN
-            *label_here = if is_near { label } else { 0 };
-        }
-    }
-}
-
-/// Labels the pixels of a tile with several regions around it.
-fn assign_tile(field: &Field, layers: &[Layer], regions: &Regions, reach: &Reach<'_>, at: usize, image: &mut [u16]) {
-    let around = Around::new(layers, at);
-    each_pixel(field, layers[0].columns, at, |place, point| {
-        let best = nearest(around.ids(), regions, point, reach.squared(point));
-        image[place] = best.map_or(0, |region| region as u16 + 1);
-    });
-}
-
-/// The plane among `around` that a pixel lies on, if the square of its distance is at most `most`.
-fn nearest(around: &[u32], regions: &Regions, point: [f64; 3], most: f64) -> Option<u32> {
-    let mut best: Option<(f64, u32)> = None;
-    for &id in around {
-        let region = &regions.all[id as usize];
-        let off = region.squared_distance(point);
-        if off <= most
-            && best.is_none_or(|(other_off, other)| region.wins(off, &regions.all[other as usize], other_off, point))
-        {
-            best = Some((off, id));
-        }
-    }
-    best.map(|(_, id)| id)
-}
-
-impl Region {
-    /// Square of a pixel's distance in q.
+impl Block {
+    /// Each pixel gets the plane within reach that the fewest others go before, of several the nearest.
     #[inline(always)]
-    fn squared_distance(&self, [u, v, q]: [f64; 3]) -> f64 {
-        (q - self.at(u, v)).powi(2)
+    fn label(&self, ids: &[u32], planes: &Planes<'_>, scratch: &mut Scratch) {
+        let Scratch { planes: here, squares, beaten, labels } = scratch;
+        let mut count = 0;
+        for &id in ids {
+            here[count] = self.local(id, planes);
+            count += usize::from(self.measure(&here[count], &mut squares[count]));
+        }
+        beaten[..count].fill([0.0; PIXELS]);
+        for j in 1..count {
+            for i in 0..j {
+                let (first, second) = beaten.split_at_mut(j);
+                let [one, other] = [i, j].map(|at| planes.region(here[at].id));
+                if overlap(&squares[i], &squares[j]) {
+                    Rule::between(one, other, &here[i], &here[j]).apply(
+                        [&squares[i], &squares[j]],
+                        &mut first[i],
+                        &mut second[0],
+                    );
+                }
+            }
+        }
+        let mut best = [f32::INFINITY; PIXELS];
+        let mut chosen = [0u32; PIXELS];
+        for i in 0..count {
+            let label = u32::from(planes.label(here[i].id));
+            for at in 0..PIXELS {
+                // Being beaten goes first: distances are at most 1.
+                let score = 1.001 * beaten[i][at] + squares[i][at];
+                chosen[at] = if score < best[at] { label } else { chosen[at] };
+                best[at] = if score < best[at] { score } else { best[at] };
+            }
+        }
+        for at in 0..PIXELS {
+            labels[at] = chosen[at] as u16;
+        }
     }
 
-    /// Whether a pixel that lies on two planes, so far off each, is this one's. A plane goes before a facet of a
-    /// curved surface; the line where two planes meet goes before the distances.
-    fn wins(&self, off: f64, other: &Region, other_off: f64, [u, v, _]: [f64; 3]) -> bool {
-        if self.is_curved != other.is_curved {
-            return other.is_curved;
+    #[inline(always)]
+    fn local(&self, id: u32, planes: &Planes<'_>) -> Local {
+        let (region, [u, v]) = (planes.region(id), self.middle);
+        let c = region.at(u, v);
+        let most = planes.reach(c) as f32;
+        Local { id, a: region.abc[0] as f32, b: region.abc[1] as f32, c: c as f32, most }
+    }
+
+    /// Measures the pixels' distances from a plane; whether some are within reach.
+    #[inline(always)]
+    fn measure(&self, plane: &Local, squares: &mut Pixels<f32>) -> bool {
+        let per_most = 1.0 / plane.most;
+        let mut any = 0u32;
+        for at in 0..PIXELS {
+            let off = self.q[at] - (plane.a * DU[at] + plane.b * DV[at] + plane.c);
+            let square = off * off * per_most;
+            squares[at] = if square <= 1.0 { square } else { f32::INFINITY };
+            any |= u32::from(square <= 1.0);
         }
-        let above = |[u, v]: [f64; 2]| self.at(u, v) - other.at(u, v);
-        let (ours, theirs) = (above(self.middle), above(other.middle));
-        if ours * theirs < 0.0 { above([u, v]) * ours > 0.0 } else { off < other_off }
+        any > 0
+    }
+}
+
+/// Whether some pixels are within reach of both of two planes.
+#[inline(always)]
+fn overlap(a: &Pixels<f32>, b: &Pixels<f32>) -> bool {
+    let both = a.iter().zip(b).fold(0u32, |any, (a, b)| any | u32::from((*a <= 1.0) & (*b <= 1.0)));
+    both > 0
+}
+
+/// Which of two planes within reach gets a pixel: the first where the line is positive, or else the nearer.
+struct Rule {
+    by_line: bool,
+    a: f32,
+    b: f32,
+    c: f32,
+}
+
+impl Rule {
+    /// A plane goes before a facet of a curved surface; the line where two planes meet, if it parts them, goes
+    /// before the distances.
+    #[inline(always)]
+    fn between(first: &Region, second: &Region, plane: &Local, other: &Local) -> Rule {
+        if first.is_curved != second.is_curved {
+            return Rule { by_line: true, a: 0.0, b: 0.0, c: if second.is_curved { 1.0 } else { -1.0 } };
+        }
+        let above = |[u, v]: [f64; 2]| first.at(u, v) - second.at(u, v);
+        let (ours, theirs) = (above(first.middle), above(second.middle));
+        let sign = if ours > 0.0 { 1.0 } else { -1.0 };
+        Rule {
+            by_line: ours * theirs < 0.0,
+            a: sign * (plane.a - other.a),
+            b: sign * (plane.b - other.b),
+            c: sign * (plane.c - other.c),
+        }
+    }
+
+    /// Counts for each of two planes the pixels where the other goes before it.
+    #[inline(always)]
+    fn apply(&self, [one, other]: [&Pixels<f32>; 2], one_beaten: &mut Pixels<f32>, other_beaten: &mut Pixels<f32>) {
+        for at in 0..PIXELS {
+            let both = if (one[at] <= 1.0) & (other[at] <= 1.0) { 1.0 } else { 0.0 };
+            let line = self.a * DU[at] + self.b * DV[at] + self.c;
+            let difference = if self.by_line { line } else { other[at] - one[at] };
+            let wins = if difference > 0.0 { both } else { 0.0 };
+            one_beaten[at] += both - wins;
+            other_beaten[at] += wins;
+        }
     }
 }

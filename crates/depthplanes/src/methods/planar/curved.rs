@@ -1,62 +1,121 @@
 //! Stage "curved": facets of curved surfaces are told from planes.
 //!
-//! In: regions of tiles. Out: which of them are curved. Growth cuts a ball or a column into facets, each
-//! flat to within the noise. Two signs tell them. A region's own tile means bow: a quadratic explains more
-//! of them than chance would. And across a joint of two facets one quadratic runs on smoothly, while the
-//! crease of two planes leaves it far off: the best
-//! parabola through a roof misses its ridge by 3/16 of the height.
+//! In: regions of cells and the pairs that touch. Out: which regions are curved. Growth cuts a ball or a column
+//! into facets, each flat to within the noise. Two signs tell them. A region's own cell means bow: a quadratic
+//! explains more of them than chance would. And across a joint of two facets one quadratic runs on smoothly, while
+//! the crease of two planes leaves it far off: the best parabola through a roof misses its ridge by
+//! 3/16 of the height.
 
 use super::grow::{Region, Regions};
-use super::tiles::{Layer, NONE, SIDE, Tile};
+use super::merge::Pair;
+use super::tiles::{Grid, NONE, Place, Pyramid};
 use crate::group::reserve_to;
+use crate::noise::NoiseModel;
+use std::ops::Range;
 
 /// Largest root mean square, in noise deviations of a pixel, of a plane's bow. Noise alone gives a region of
-/// 15 tiles 0.11 (three terms of a quadratic, 240 pixels).
-const BOW: f64 = 0.3;
-/// Fewest tiles of a region whose bow means something.
-const LEAST: usize = 15;
-/// Fewest tiles that a quadratic, six numbers, is fitted to.
+/// 240 pixels 0.11 (three terms of a quadratic).
+const BOW: f64 = 0.4;
+/// Fewest pixels of a region whose bow means something.
+const LEAST: f64 = 240.0;
+/// Fewest cells that a quadratic, six numbers, is fitted to.
 const ENOUGH: f64 = 12.0;
-/// Largest mean square, in variances of a pixel, by which tile means may miss a quadratic that explains them.
+/// Fewest cells of each side of a joint.
+const FEW: f64 = 4.0;
+/// Cells of a region that are enough to see its shape: where so many coarse ones lie in it, finer ones are not looked at.
+const PLENTY: f64 = 40.0;
+/// Largest mean square, in variances of a pixel, by which cell means may miss a quadratic that explains them.
 const SMOOTH: f64 = 0.12;
 /// The same for a small region beside one that is known to be curved.
 const LOOSE: f64 = 0.4;
 /// Variances by which the quadratic has to explain both better than their two planes do: three deviations.
 const GAIN: f64 = 9.0;
+/// Standard deviations between two planes where they touch, from which on they are two surfaces.
+const STEP: f64 = 6.0;
+/// Pixels below which a region's surroundings are looked at as well: its neighbours may be too small for regions.
+const SMALL: f64 = 1000.0;
+/// Share of the squares about a plane that a quadratic may leave around a small region: half of what it leaves of
+/// a surface that turns off at a crease.
+const CREASE: f64 = 0.03;
+/// How far around, in tiles.
+const RING: usize = 1;
+/// Standard deviations between two planes in the middle of the smaller region, from which on they meet in a crease:
+/// a quadratic through a roof that rises d to each side is 0.07 d off, root mean square.
+const SHARP: f64 = 20.0;
 
-/// A quadratic fitted to tile means by least squares: normal equations and their solution.
-#[derive(Clone, Debug, Default)]
-struct Quadratic {
-    matrix: [[f64; 6]; 6],
-    right: [f64; 6],
+/// Sums over cells of `weight x^i y^j` up to the fourth power, and with a value r up to the second: the normal equations
+/// of a quadratic in (x, y), and how well it or anything else explains r.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    /// Of x^i y^j, i + j <= 4, by j and i.
+    powers: [[f64; 5]; 5],
+    /// Of r x^i y^j, i + j <= 2.
+    right: [[f64; 3]; 3],
+    /// Of r r.
+    squares: f64,
+    /// Cells.
+    cells: f64,
+    /// Pixels.
+    pixels: f64,
+    /// Sum of the weighed squared residuals about the cell's own region.
+    by_planes: f64,
 }
 
-/// What a tile contributes: 1, x, y, x^2, x y, y^2 of its centre.
-fn terms(x: f64, y: f64) -> [f64; 6] {
-    [1.0, x, y, x * x, x * y, y * y]
-}
+/// (j, i) of the terms 1, x, y, x^2, x y, y^2.
+const TERMS: [[usize; 2]; 6] = [[0, 0], [0, 1], [1, 0], [0, 2], [1, 1], [2, 0]];
 
-impl Quadratic {
-    fn add(&mut self, terms: [f64; 6], value: f64, weight: f64) {
-        for i in 0..6 {
-            self.right[i] += weight * terms[i] * value;
-            for j in 0..6 {
-                self.matrix[i][j] += weight * terms[i] * terms[j];
+impl Sums {
+    /// Adds cells of one row, summed along it: `powers[i]` of `w x^i`, `right[i]` of `w r x^i`.
+    fn add_row(&mut self, y: f64, powers: [f64; 5], right: [f64; 3]) {
+        let mut yj = 1.0;
+        for j in 0..5 {
+            for i in 0..5 - j {
+                self.powers[j][i] += yj * powers[i];
             }
+            for i in 0..3usize.saturating_sub(j) {
+                self.right[j][i] += yj * right[i];
+            }
+            yj *= y;
         }
     }
 
-    /// The coefficients; terms that the tiles do not determine are 0.
-    fn solve(&self) -> [f64; 6] {
-        let (mut m, mut r) = (self.matrix, self.right);
+    fn merge(&self, other: &Sums) -> Sums {
+        let mut both = *self;
+        for j in 0..5 {
+            for i in 0..5 - j {
+                both.powers[j][i] += other.powers[j][i];
+            }
+        }
+        for [j, i] in TERMS {
+            both.right[j][i] += other.right[j][i];
+        }
+        both.squares += other.squares;
+        both.cells += other.cells;
+        both.pixels += other.pixels;
+        both.by_planes += other.by_planes;
+        both
+    }
+
+    fn matrix(&self) -> [[f64; 6]; 6] {
+        TERMS.map(|[j, i]| TERMS.map(|[l, k]| self.powers[j + l][i + k]))
+    }
+
+    fn right(&self) -> [f64; 6] {
+        TERMS.map(|[j, i]| self.right[j][i])
+    }
+
+    /// The least-squares coefficients of the first `count` terms; those that the cells do not determine are 0.
+    fn solve(&self, count: usize) -> [f64; 6] {
+        let (mut m, mut r) = (self.matrix(), self.right());
+        let diagonal: [f64; 6] = std::array::from_fn(|i| m[i][i]);
         let mut pivots = [false; 6];
-        for i in 0..6 {
-            pivots[i] = m[i][i] > 1e-9 * self.matrix[i][i];
+        for i in 0..count {
+            pivots[i] = m[i][i] > 1e-9 * diagonal[i];
             if pivots[i] {
-                for k in i + 1..6 {
+                for k in i + 1..count {
                     let factor = m[k][i] / m[i][i];
                     r[k] -= factor * r[i];
-                    for j in i..6 {
+                    for j in i..count {
                         m[k][j] -= factor * m[i][j];
                     }
                 }
@@ -64,122 +123,287 @@ impl Quadratic {
         }
         let mut solution = [0.0; 6];
         for i in (0..6).rev().filter(|&i| pivots[i]) {
-            let known: f64 = (i + 1..6).map(|j| m[i][j] * solution[j]).sum();
+            let known: f64 = (i + 1..count).map(|j| m[i][j] * solution[j]).sum();
             solution[i] = (r[i] - known) / m[i][i];
         }
         solution
+    }
+
+    /// What a quadratic explains beyond a plane.
+    fn bow(&self) -> f64 {
+        self.left_by(&self.solve(3)) - self.left_by(&self.solve(6))
+    }
+
+    /// Sum of the weighed squares that these coefficients leave.
+    fn left_by(&self, coefficients: &[f64; 6]) -> f64 {
+        let (matrix, right) = (self.matrix(), self.right());
+        let explained: f64 = (0..6)
+            .map(|i| {
+                let product: f64 = (0..6).map(|j| matrix[i][j] * coefficients[j]).sum();
+                coefficients[i] * (2.0 * right[i] - product)
+            })
+            .sum();
+        self.squares - explained
+    }
+}
+
+/// Columns and rows of cells around a region.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CellBox {
+    pub(super) first: [usize; 2],
+    pub(super) last: [usize; 2],
+}
+
+impl CellBox {
+    const NOTHING: CellBox = CellBox { first: [usize::MAX; 2], last: [0; 2] };
+
+    fn area(&self) -> usize {
+        (self.last[0] + 1).saturating_sub(self.first[0]) * (self.last[1] + 1).saturating_sub(self.first[1])
+    }
+
+    fn include(&mut self, columns: [usize; 2], row: usize) {
+        self.first = [self.first[0].min(columns[0]), self.first[1].min(row)];
+        self.last = [self.last[0].max(columns[1]), self.last[1].max(row)];
+    }
+
+    /// The box in cells that are `1 << level` times as large, with its own size added on every side.
+    fn widened(self, level: usize, grid: &Grid) -> CellBox {
+        let (first, last) = (self.first.map(|place| place >> level), self.last.map(|place| place >> level));
+        let reach = [0, 1].map(|axis| last[axis].saturating_sub(first[axis]) + 2);
+        let most = [grid.columns - 1, grid.rows - 1];
+        CellBox {
+            first: [0, 1].map(|axis| first[axis].saturating_sub(reach[axis])),
+            last: [0, 1].map(|axis| (last[axis] + reach[axis]).min(most[axis])),
+        }
     }
 }
 
 /// Memory of this stage.
 #[derive(Debug, Default)]
 pub(super) struct Facets {
-    fits: Vec<Quadratic>,
-    boxes: Vec<TileBox>,
+    sums: Vec<Sums>,
+    pub(super) boxes: Vec<CellBox>,
+    /// For each region the coarsest grid that shows its shape.
+    levels: Vec<u8>,
     curved: Vec<bool>,
 }
 
-impl Facets {
-    /// Makes room for the worst of a map with so many tiles.
-    pub(super) fn prepare(&mut self, tiles: usize) {
-        reserve_to(&mut self.fits, 2 * tiles);
-        reserve_to(&mut self.boxes, 2 * tiles);
-        reserve_to(&mut self.curved, 2 * tiles);
-    }
+/// What is known of the regions and the map they lie in.
+struct Scene<'a> {
+    pyramid: &'a Pyramid,
+    all: &'a [Region],
+    noise: &'a NoiseModel,
+    boxes: &'a [CellBox],
+    levels: &'a [u8],
+}
 
+impl Facets {
     /// Marks the regions that are facets of a curved surface.
-    pub(super) fn mark(&mut self, layers: &[Layer], regions: &mut Regions) {
-        regions.list_pairs(layers);
-        let Facets { fits, boxes, curved } = self;
-        mark_bowed(layers, regions, fits, curved);
-        find_boxes(layers, regions, boxes);
-        for &(a, b) in &regions.pairs {
+    pub(super) fn mark(&mut self, pyramid: &mut Pyramid, regions: &mut Regions, pairs: &[Pair], noise: &NoiseModel) {
+        let cells = pyramid.grids[0].len();
+        reserve_to(&mut self.sums, cells);
+        reserve_to(&mut self.boxes, cells);
+        reserve_to(&mut self.levels, cells);
+        reserve_to(&mut self.curved, cells);
+        pyramid.hand_up();
+        let Facets { sums, boxes, levels, curved } = self;
+        find_boxes(&pyramid.grids[0], regions.all.len(), boxes);
+        mark_bowed(pyramid, &regions.all, sums, levels, curved);
+        let scene = Scene { pyramid, all: &regions.all, noise, boxes, levels };
+        for pair in pairs.iter().filter(|pair| !scene.are_apart(pair)) {
+            let [a, b] = pair.ids;
             let is_larger = boxes[a as usize].area() < boxes[b as usize].area();
             let [small, large] = if is_larger { [a, b] } else { [b, a] };
-            let joint = Joint::around(layers, regions, small, |id| id == large, &boxes[small as usize]);
-            if let Some(seen) = joint.is_smooth() {
+            if scene.is_sharp(small, large) || sums[small as usize].bow() + sums[large as usize].bow() < GAIN {
+                continue;
+            }
+            if let Some(seen) = scene.joint(small, |id| id == large).is_smooth() {
                 curved[small as usize] = true;
-                curved[large as usize] |= 2.0 * seen >= regions.all[large as usize].tiles as f64;
+                curved[large as usize] |= 2.0 * seen >= regions.all[large as usize].sums.n;
             }
         }
-        while spread(layers, regions, boxes, curved) {}
+        for id in (0..regions.all.len()).filter(|&id| regions.all[id].sums.n < SMALL) {
+            curved[id] = curved[id] || scene.surroundings(id as u32).bends();
+        }
+        while scene.spread(pairs, curved) {}
         regions.all.iter_mut().zip(curved).for_each(|(region, curved)| region.is_curved |= *curved);
     }
 }
 
-/// Marks small regions that continue curved ones; whether there were any.
-fn spread(layers: &[Layer], regions: &Regions, boxes: &[TileBox], curved: &mut [bool]) -> bool {
-    let mut any = false;
-    for &(a, b) in &regions.pairs {
-        for (small, other) in [(a as usize, b as usize), (b as usize, a as usize)] {
-            if curved[other] && !curved[small] && regions.all[small].tiles < LEAST {
-                let joint = Joint::around(layers, regions, small as u32, |id| curved[id as usize], &boxes[small]);
-                curved[small] = joint.continues();
-                any |= curved[small];
+impl Scene<'_> {
+    /// Whether there is a step between two regions where they touch.
+    fn are_apart(&self, pair: &Pair) -> bool {
+        let [u, v] = pair.middle();
+        let [a, b] = pair.ids.map(|id| self.all[id as usize].at(u, v));
+        (a - b).powi(2) > STEP * STEP * self.noise.variance((a + b) / 2.0)
+    }
+
+    /// Whether two planes part so fast that no quadratic follows both.
+    fn is_sharp(&self, small: u32, large: u32) -> bool {
+        let [small, large] = [small, large].map(|id| &self.all[id as usize]);
+        let [u, v] = small.middle;
+        let q = small.at(u, v);
+        (large.at(u, v) - q).powi(2) > SHARP * SHARP * self.noise.variance(q)
+    }
+
+    /// Marks small regions that continue curved ones; whether there were any.
+    fn spread(&self, pairs: &[Pair], curved: &mut [bool]) -> bool {
+        let mut any = false;
+        for pair in pairs {
+            let [a, b] = pair.ids.map(|id| id as usize);
+            for (small, other) in [(a, b), (b, a)] {
+                if curved[other] && !curved[small] && self.all[small].sums.n < LEAST && !self.are_apart(pair) {
+                    curved[small] = self.joint(small as u32, |id| curved[id as usize]).continues();
+                    any |= curved[small];
+                }
             }
         }
+        any
     }
-    any
-}
 
-/// Mean residual of a tile about a region's plane.
-fn mean_residual(tile: &Tile, region: &Region) -> f64 {
-    let [u, v] = tile.centre();
-    tile.mean() - region.at(u, v)
-}
-
-/// Marks regions whose tile means follow a quadratic by more than [`BOW`].
-fn mark_bowed(layers: &[Layer], regions: &Regions, fits: &mut Vec<Quadratic>, curved: &mut Vec<bool>) {
-    fits.clear();
-    fits.resize(regions.all.len(), Quadratic::default());
-    for (_, tile, id) in layers.iter().flat_map(Layer::placed) {
-        let region = &regions.all[id as usize];
-        let scale = region.sums.n.sqrt();
-        let [u, v] = tile.centre();
-        let terms = terms((u - region.middle[0]) / scale, (v - region.middle[1]) / scale);
-        fits[id as usize].add(terms, mean_residual(tile, region), tile.sums.n);
-    }
-    curved.clear();
-    curved.extend(fits.iter().zip(&regions.all).map(|(fit, region)| {
-        let explained: f64 = fit.solve().iter().zip(&fit.right).map(|(x, r)| x * r).sum();
-        region.tiles >= LEAST && explained > BOW * BOW * region.variance
-    }));
-}
-
-/// Columns and rows of tiles around a region.
-#[derive(Clone, Copy, Debug)]
-struct TileBox {
-    first: [usize; 2],
-    last: [usize; 2],
-}
-
-impl TileBox {
-    fn area(&self) -> usize {
-        (self.last[0] + 1).saturating_sub(self.first[0]) * (self.last[1] + 1).saturating_sub(self.first[1])
-    }
-}
-
-impl TileBox {
-    /// The box with its own size added on every side.
-    fn widened(self, layer: &Layer) -> TileBox {
-        let reach = [0, 1].map(|axis| self.last[axis].saturating_sub(self.first[axis]) + 2);
-        let most = [layer.columns - 1, layer.rows - 1];
-        TileBox {
-            first: [0, 1].map(|axis| self.first[axis].saturating_sub(reach[axis])),
-            last: [0, 1].map(|axis| (self.last[axis] + reach[axis]).min(most[axis])),
+    /// Looks at a small region and the flat tiles around it that no large plane explains.
+    fn surroundings(&self, small: u32) -> Joint {
+        let plane = &self.all[small as usize];
+        let grid = &self.pyramid.grids[0];
+        let CellBox { first, last } = self.boxes[small as usize];
+        let frame = Frame::of(plane);
+        let mut sums = [Sums::default(); 2];
+        for row in first[1].saturating_sub(RING)..(last[1] + RING + 1).min(grid.rows) {
+            for column in first[0].saturating_sub(RING)..(last[0] + RING + 1).min(grid.columns) {
+                let at = row * grid.columns + column;
+                let id = grid.region[at];
+                let is_own = id == small;
+                let is_loose = || id == NONE || self.all[id as usize].sums.n < SMALL;
+                if is_own || (grid.roughness[at] <= 1.0 && is_loose()) {
+                    let cell = grid.cell(Place { row: row as u32, column: column as u32 });
+                    let off = cell.residual_about(plane.abc, plane.origin) / cell.n;
+                    if is_own || off * off <= SHARP * SHARP * cell.variance {
+                        sums[usize::from(is_own)].add_run(grid, row, column..column + 1, plane, plane, &frame);
+                    }
+                }
+            }
         }
+        Joint::of(sums)
+    }
+
+    /// Looks at a region and at those that `neighbours` names, within its box and as much again on each side.
+    fn joint(&self, small: u32, neighbours: impl Fn(u32) -> bool) -> Joint {
+        let plane = &self.all[small as usize];
+        let level = usize::from(self.levels[small as usize]);
+        let grid = &self.pyramid.grids[level];
+        let around = self.boxes[small as usize].widened(level, grid);
+        let frame = Frame::of(plane);
+        let mut sums = [Sums::default(); 2];
+        for row in around.first[1]..=around.last[1] {
+            let part = row * grid.columns + around.first[0]..row * grid.columns + around.last[0] + 1;
+            each_run(&grid.region[part], around.first[0], |id, columns| {
+                if id == small || neighbours(id) {
+                    let own = &self.all[id as usize];
+                    sums[usize::from(id == small)].add_run(grid, row, columns, plane, own, &frame);
+                }
+            });
+        }
+        Joint::of(sums)
     }
 }
 
-fn find_boxes(layers: &[Layer], regions: &Regions, boxes: &mut Vec<TileBox>) {
+/// Calls `visit` for each run of a row's cells that have one region: the region, the columns.
+fn each_run(row: &[u32], first: usize, mut visit: impl FnMut(u32, Range<usize>)) {
+    let mut start = 0;
+    while start < row.len() {
+        let id = row[start];
+        let end = run_end(row, start);
+        if id != NONE {
+            visit(id, first + start..first + end);
+        }
+        start = end;
+    }
+}
+
+/// Where the run that begins at `start` ends.
+#[inline(always)]
+fn run_end(row: &[u32], start: usize) -> usize {
+    let id = row[start];
+    let alike = |cells: &[u32; 8]| cells.iter().fold(true, |all, &other| all & (other == id));
+    let (eights, _) = row[start..].as_chunks::<8>();
+    let passed = start + 8 * eights.iter().position(|cells| !alike(cells)).unwrap_or(eights.len());
+    passed + row[passed..].iter().position(|&other| other != id).unwrap_or(row.len() - passed)
+}
+
+/// Where x and y of a region's quadratic are 0, and pixels per unit.
+struct Frame {
+    middle: [f64; 2],
+    scale: f64,
+}
+
+impl Frame {
+    fn of(region: &Region) -> Self {
+        Frame { middle: region.middle, scale: 1.0 / region.sums.n.sqrt() }
+    }
+}
+
+impl Sums {
+    /// Adds a run of cells: their mean residuals about `plane`, and how far off their own region's is.
+    fn add_run(&mut self, grid: &Grid, row: usize, columns: Range<usize>, plane: &Region, own: &Region, frame: &Frame) {
+        let (mut powers, mut right) = ([0.0; 5], [0.0; 3]);
+        let mut y = 0.0;
+        for column in columns {
+            let cell = grid.cell(Place { row: row as u32, column: column as u32 });
+            let x = (cell.middle[0] - frame.middle[0]) * frame.scale;
+            y = (cell.middle[1] - frame.middle[1]) * frame.scale;
+            let (per_variance, per_n) = (1.0 / cell.variance, 1.0 / cell.n);
+            let weight = cell.n * per_variance;
+            let residual = cell.residual_about(plane.abc, plane.origin);
+            let weighed = residual * per_variance;
+            let xx = x * x;
+            let (wx, wxx) = (weight * x, weight * xx);
+            powers = [powers[0] + weight, powers[1] + wx, powers[2] + wxx, powers[3] + wx * xx, powers[4] + wxx * xx];
+            right = [right[0] + weighed, right[1] + weighed * x, right[2] + weighed * xx];
+            self.squares += weighed * residual * per_n;
+            self.pixels += cell.n;
+            self.cells += 1.0;
+            let by_own = cell.residual_about(own.abc, own.origin);
+            self.by_planes += by_own * by_own * per_variance * per_n;
+        }
+        self.add_row(y, powers, right);
+    }
+}
+
+fn find_boxes(grid: &Grid, regions: usize, boxes: &mut Vec<CellBox>) {
     boxes.clear();
-    boxes.resize(regions.all.len(), TileBox { first: [usize::MAX; 2], last: [0; 2] });
-    let columns = layers[0].columns;
-    for (at, _, id) in layers.iter().flat_map(Layer::placed) {
-        let around = &mut boxes[id as usize];
-        for (axis, place) in [at % columns, at / columns].into_iter().enumerate() {
-            around.first[axis] = around.first[axis].min(place);
-            around.last[axis] = around.last[axis].max(place);
+    boxes.resize(regions, CellBox::NOTHING);
+    for (row, ids) in grid.region.chunks_exact(grid.columns).enumerate() {
+        each_run(ids, 0, |id, columns| boxes[id as usize].include([columns.start, columns.end - 1], row));
+    }
+}
+
+/// Marks regions whose cell means follow a quadratic by more than [`BOW`], each on the coarsest grid where it has
+/// plenty of cells.
+fn mark_bowed(pyramid: &Pyramid, all: &[Region], sums: &mut Vec<Sums>, levels: &mut Vec<u8>, curved: &mut Vec<bool>) {
+    const OPEN: u8 = u8::MAX;
+    curved.clear();
+    curved.resize(all.len(), false);
+    levels.clear();
+    levels.resize(all.len(), OPEN);
+    sums.clear();
+    sums.resize(all.len(), Sums::default());
+    for (level, grid) in pyramid.grids.iter().enumerate().rev() {
+        for (sums, _) in sums.iter_mut().zip(levels.iter()).filter(|(_, level)| **level == OPEN) {
+            *sums = Sums::default();
+        }
+        for (row, ids) in grid.region.chunks_exact(grid.columns).enumerate() {
+            each_run(ids, 0, |id, columns| {
+                if levels[id as usize] == OPEN {
+                    let region = &all[id as usize];
+                    sums[id as usize].add_run(grid, row, columns, region, region, &Frame::of(region));
+                }
+            });
+        }
+        for ((sums, seen), curved) in sums.iter().zip(levels.iter_mut()).zip(curved.iter_mut()) {
+            if *seen == OPEN && (sums.cells >= PLENTY || level == 0) {
+                *seen = level as u8;
+                *curved = sums.pixels >= LEAST && sums.bow() > BOW * BOW * sums.pixels;
+            }
         }
     }
 }
@@ -187,78 +411,49 @@ fn find_boxes(layers: &[Layer], regions: &Regions, boxes: &mut Vec<TileBox>) {
 /// How well one quadratic explains a small region and its neighbours around it. First of each pair the
 /// neighbours, then the region.
 struct Joint {
-    tiles: [f64; 2],
-    pixels: [f64; 2],
-    /// Squares of tile means about the quadratic, in variances of a tile's mean, beyond what noise leaves.
+    sums: [Sums; 2],
+    /// Squares of cell means about the quadratic, in variances, beyond what noise leaves.
     missed: [f64; 2],
-    /// The same about the regions' own planes.
-    missed_by_planes: [f64; 2],
 }
 
 impl Joint {
-    /// Looks at a region and at those that `neighbours` names, within its box and as much again on each side.
-    fn around(
-        layers: &[Layer],
-        regions: &Regions,
-        small: u32,
-        neighbours: impl Fn(u32) -> bool,
-        region_box: &TileBox,
-    ) -> Self {
-        let around = region_box.widened(&layers[0]);
-        let plane = &regions.all[small as usize];
-        let mut joint = Joint { tiles: [0.0; 2], pixels: [0.0; 2], missed: [0.0; 2], missed_by_planes: [0.0; 2] };
-        let ours = |id: u32| id == small || (id != NONE && neighbours(id));
-        let mut fit = Quadratic::default();
-        around.each_tile(layers, ours, |tile, terms, id| {
-            fit.add(terms, mean_residual(tile, plane), tile.sums.n);
-            joint.tiles[usize::from(id == small)] += 1.0;
-        });
-        let coefficients = fit.solve();
-        around.each_tile(layers, ours, |tile, terms, id| {
-            let bow: f64 = terms.iter().zip(coefficients).map(|(x, c)| x * c).sum();
-            let off = [mean_residual(tile, plane) - bow, mean_residual(tile, &regions.all[id as usize])];
-            let [by_quadratic, by_plane] = off.map(|off| off * off * tile.sums.n / tile.variance - 1.0);
-            let which = usize::from(id == small);
-            joint.missed[which] += by_quadratic;
-            joint.missed_by_planes[which] += by_plane;
-            joint.pixels[which] += tile.sums.n;
-        });
-        joint
+    fn of(sums: [Sums; 2]) -> Self {
+        let quadratic = sums[0].merge(&sums[1]).solve(6);
+        let missed = [0, 1].map(|which: usize| sums[which].left_by(&quadratic) - sums[which].cells);
+        Joint { sums, missed }
+    }
+
+    fn has_enough(&self) -> bool {
+        self.sums.iter().all(|sums| sums.cells >= FEW) && self.sums.iter().map(|sums| sums.cells).sum::<f64>() >= ENOUGH
     }
 
     /// Whether it misses neither by more than `most` variances of a pixel.
     fn is_close(&self, most: f64) -> bool {
-        (0..2).all(|which| self.missed[which] <= most * self.pixels[which])
+        (0..2).all(|which| self.missed[which] <= most * self.sums[which].pixels)
     }
 
-    /// Whether the quadratic explains both regions, and better than their planes; if so, how many tiles of
+    /// Whether the quadratic explains both regions, and better than their planes; if so, how many pixels of
     /// the neighbour were seen.
     fn is_smooth(&self) -> Option<f64> {
-        let enough = self.tiles.iter().all(|&tiles| tiles >= 4.0) && self.tiles.iter().sum::<f64>() >= ENOUGH;
-        let better = self.missed.iter().sum::<f64>() + GAIN <= self.missed_by_planes.iter().sum();
-        (enough && better && self.is_close(SMOOTH)).then_some(self.tiles[0])
+        let by_planes: f64 = self.sums.iter().map(|sums| sums.by_planes - sums.cells).sum();
+        let is_better = self.missed.iter().sum::<f64>() + GAIN <= by_planes;
+        (self.has_enough() && is_better && self.is_close(SMOOTH)).then_some(self.sums[0].pixels)
+    }
+
+    /// Whether a small region and what is around it bend smoothly.
+    fn bends(&self) -> bool {
+        let both = self.sums[0].merge(&self.sums[1]);
+        let missed: f64 = self.missed.iter().sum();
+        let by_plane = both.left_by(&both.solve(3)) - both.cells;
+        let is_better = missed + GAIN <= by_plane;
+        let is_bent = self.is_close(SMOOTH) || (self.is_close(LOOSE) && missed <= CREASE * by_plane);
+        self.has_enough() && is_better && is_bent
     }
 
     /// Whether a small region lies on the quadratic of curved neighbours.
     fn continues(&self) -> bool {
-        self.tiles[0] >= 4.0 && self.tiles.iter().sum::<f64>() >= ENOUGH && self.is_close(LOOSE)
-    }
-}
-
-impl TileBox {
-    /// Calls `visit` for each tile of the box whose region `ours` names.
-    fn each_tile(&self, layers: &[Layer], ours: impl Fn(u32) -> bool, mut visit: impl FnMut(&Tile, [f64; 6], u32)) {
-        let [u, v] = self.first.map(|first| (first * SIDE) as f64);
-        let sides = self.last[0] + self.last[1] + 2 - self.first[0] - self.first[1];
-        let scale = 1.0 / (SIDE * sides) as f64;
-        for row in self.first[1]..=self.last[1] {
-            for Layer { columns, tiles, region, .. } in layers {
-                let part = row * columns + self.first[0]..row * columns + self.last[0] + 1;
-                for (tile, &id) in tiles[part.clone()].iter().zip(&region[part]).filter(|(_, id)| ours(**id)) {
-                    let [x, y] = tile.centre();
-                    visit(tile, terms((x - u) * scale, (y - v) * scale), id);
-                }
-            }
-        }
+        self.sums[1].cells >= FEW
+            && self.sums.iter().map(|sums| sums.cells).sum::<f64>() >= ENOUGH
+            && self.is_close(LOOSE)
     }
 }

@@ -1,42 +1,36 @@
 //! How noisy a sensor is, from one frame of it.
 //!
-//! In: the scatter of tiles about their own planes. Out: a noise model. Most tiles of most maps lie on one
+//! In: the scatter of cells about their own planes. Out: a noise model. Most cells of most maps lie on one
 //! smooth surface, so the lower half of the scatter in each stretch of q is noise.
 
-use super::tiles::{Layer, SIDE};
-use crate::fit::Moments;
+use super::tiles::Grid;
 use crate::group::reserve_to;
 use crate::noise::{NoiseModel, Space};
 
 /// Stretches of q, each with as many blocks.
 const BINS: usize = 8;
-/// Tiles of a block's side. A block is large enough to span the steps of a sensor that rounds coarsely:
-/// within one step a tile shows no noise at all.
-const BLOCK: usize = 3;
 /// Share of the blocks of a stretch that are taken to be flat.
 const FLAT: f64 = 0.5;
+/// Least share of a block's pixels that are valid.
+const FULL: f32 = 0.8;
 
 /// Memory of this stage.
 #[derive(Debug, Default)]
 pub(super) struct Level {
-    /// Mean q and scatter of each block.
+    /// q and scatter of each block.
     blocks: Vec<(f64, f64)>,
 }
 
 impl Level {
-    /// Makes room for a map with so many tiles.
-    pub(super) fn prepare(&mut self, tiles: usize) {
-        reserve_to(&mut self.blocks, tiles);
-    }
-
-    /// The noise model that explains the scatter of a map whose values come in steps of so many map units.
-    pub(super) fn estimate(&mut self, layer: &Layer, space: Space, step: f64) -> NoiseModel {
+    /// The noise model that explains the scatter of a map whose values come in steps of so many map units. The
+    /// cells should be large enough to span the steps of a sensor that rounds coarsely: within one step a
+    /// cell shows no noise at all.
+    pub(super) fn estimate(&mut self, grid: &Grid, space: Space, step: f64) -> NoiseModel {
         let blocks = &mut self.blocks;
-        blocks.clear();
-        for row in (0..layer.rows.saturating_sub(BLOCK - 1)).step_by(BLOCK) {
-            let columns = (0..layer.columns.saturating_sub(BLOCK - 1)).step_by(BLOCK);
-            blocks.extend(columns.filter_map(|column| scatter(layer, column, row)));
-        }
+        reserve_to(blocks, grid.len());
+        let full = FULL * (grid.side * grid.side) as f32;
+        let blocks_of = (0..grid.len()).filter(|&at| grid.pixels(at) >= full);
+        blocks.extend(blocks_of.map(|at| (grid.q(at), f64::from(grid.squares(at) / grid.pixels(at)).sqrt())));
         blocks.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
         let size = blocks.len().div_ceil(BINS).max(1);
         let mut points = [(0.0, 0.0); BINS];
@@ -51,21 +45,6 @@ impl Level {
         NoiseModel::new(space, constant, square, step)
     }
 }
-
-/// Mean q of a block and its root mean square residual; `None` if too much is missing.
-fn scatter(layer: &Layer, column: usize, row: usize) -> Option<(f64, f64)> {
-    let first = &layer.tiles[row * layer.columns + column];
-    let mut sums = Moments::default();
-    for y in row..row + BLOCK {
-        for tile in &layer.tiles[y * layer.columns + column..][..BLOCK] {
-            sums.merge(&tile.sums.moved([tile.u - first.u, tile.v - first.v, tile.q - first.q]));
-        }
-    }
-    let full = (BLOCK * BLOCK * SIDE * SIDE) as f64;
-    let fit = sums.fit().filter(|fit| fit.n >= 0.8 * full)?;
-    Some((first.q + sums.q / sums.n, fit.rms))
-}
-
 /// Least squares of `sigma = constant + square q^2`, neither below 0, each point weighed by its size.
 fn non_negative(points: &[(f64, f64)], space: Space) -> [f64; 2] {
     if points.is_empty() {

@@ -6,8 +6,12 @@
 
 mod assign;
 mod curved;
+mod explained;
+mod field;
 mod grow;
 mod level;
+mod merge;
+mod planes;
 mod tiles;
 
 use super::{Job, Method, MethodInfo, Param, ParamKind};
@@ -15,21 +19,24 @@ use crate::camera::Sensor;
 use crate::describe::Describer;
 use crate::detection::Detection;
 use crate::error::{Error, Result};
-use crate::group::{Grouper, LinkRule, reserve_to};
+use crate::group::{Grouper, LinkRule};
 use crate::map::{AnyView, DepthView, Pixel};
 use crate::noise::{NoiseModel, SensorNoise, Space};
 use crate::select::Selection;
 use crate::with_view;
-use assign::{Explained, Reach};
 use curved::Facets;
+use explained::Explainer;
+use field::Field;
 use grow::Regions;
 use level::Level;
-use tiles::{Field, Layer};
+use merge::Merger;
+use planes::Planes;
+use tiles::{LEVELS, Pyramid};
 
 pub(super) static INFO: MethodInfo = MethodInfo {
     name: "planar",
     about: "Finds true planes: regions that one plane explains to within the sensor's noise, in inverse depth or disparity.",
-    stages: &["tiles", "regions", "group", "select", "fit", "label"],
+    stages: &["tiles", "grow", "judge", "assign", "group", "select", "fit", "label"],
     params: PARAMS,
     build: |values| {
         INFO.check(values)?;
@@ -79,10 +86,6 @@ const PARAMS: &[Param] = &[
         source: None,
     },
 ];
-
-/// Fewest pixels of a tile that starts a region: half of it; in the second round, where the pixels of
-/// known planes are left out, a third.
-const LEAST: [f64; 2] = [8.0, 6.0];
 
 /// Parameters of the method `planar`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -141,12 +144,12 @@ impl TryFrom<Planar> for Box<dyn Method> {
 struct Runner {
     params: Planar,
     field: Field,
-    layers: [Layer; 2],
-    regions: Regions,
-    facets: Facets,
+    pyramid: Pyramid,
     level: Level,
-    explained: Vec<Explained>,
-    across: Vec<u32>,
+    regions: Regions,
+    merger: Merger,
+    facets: Facets,
+    explainer: Explainer,
     image: Vec<u16>,
     grouper: Grouper,
     selection: Selection,
@@ -167,13 +170,15 @@ impl Runner {
     fn planar<T: Pixel>(&mut self, map: DepthView<'_, T>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
         let noise = self.sum_tiles(&map, &job.sensor);
         job.done("tiles");
-        for round in 0..self.layers.len() {
-            self.find_regions(round, &noise)?;
-        }
-        self.leave_out_curved();
-        job.done("regions");
+        self.grow(&noise)?;
+        job.done("grow");
+        self.judge(&noise);
+        job.done("judge");
+        self.assign(&noise);
+        job.done("assign");
         let Runner { params, field, image, grouper, selection, describer, .. } = self;
-        let ids = DepthView::new(image, map.width(), map.height())?;
+        let ids =
+            DepthView::with_stride(&image[..field.stride * map.height()], map.width(), map.height(), field.stride)?;
         let groups = grouper.group(&ids, &LinkRule::new(ids.validity(), 0.0)?, job.threads);
         job.done("group");
         selection.select(groups, params.min)?;
@@ -191,45 +196,42 @@ impl Runner {
 
     /// The map in the space where planes are affine, its tiles, and the noise to expect.
     fn sum_tiles<T: Pixel>(&mut self, map: &DepthView<'_, T>, sensor: &Sensor) -> NoiseModel {
-        let Runner { params, field, layers, regions, facets, level, explained, image, .. } = self;
+        let Runner { params, field, pyramid, level, .. } = self;
         let space = Space::of(sensor.measure);
         field.fill(map, space);
-        image.clear();
-        image.resize(field.q.len(), 0);
-        layers[0].sum(field, image);
-        let tiles = layers[0].tiles.len();
-        regions.prepare(tiles);
-        facets.prepare(tiles);
-        level.prepare(tiles);
-        reserve_to(explained, 2 * tiles);
+        pyramid.sum(field);
         let stated = params.noise(space).or(sensor.noise);
         let noise = stated.and_then(|noise| NoiseModel::of_sensor(space, noise, field.step));
-        noise.unwrap_or_else(|| level.estimate(&layers[0], space, field.step))
+        noise.unwrap_or_else(|| level.estimate(&pyramid.grids[LEVELS - 1], space, field.step))
     }
 
-    /// One round of growth, over the pixels that no plane explains yet.
-    fn find_regions(&mut self, round: usize, noise: &NoiseModel) -> Result<()> {
-        let Runner { params, field, layers, regions, facets, explained, across, image, .. } = self;
-        let reach = Reach { noise, confidence: params.confidence };
-        if round > 0 {
-            layers[round].sum(field, image);
-        }
-        layers[round].expect(noise);
-        regions.grow(&mut layers[round], LEAST[round], params.confidence);
-        let layers = &mut layers[..=round];
-        regions.merge(layers);
-        regions.drop_small(layers, f64::from(params.min) * 0.5)?;
-        facets.mark(layers, regions);
-        assign::drop_explained(field, layers, regions, &reach, explained);
-        assign::assign(field, layers, regions, &reach, across, image);
-        Ok(())
+    /// Regions of cells on one plane.
+    fn grow(&mut self, noise: &NoiseModel) -> Result<()> {
+        let Runner { params, pyramid, regions, merger, .. } = self;
+        pyramid.expect(noise, params.confidence);
+        regions.grow(pyramid, params.confidence);
+        merger.merge(&mut pyramid.grids[0], regions, f64::from(params.min) * 0.5)
     }
 
-    fn leave_out_curved(&mut self) {
-        for id in self.image.iter_mut().filter(|id| **id > 0) {
-            if self.regions.all[usize::from(*id) - 1].is_curved {
-                *id = 0;
-            }
-        }
+    /// Which regions are curved, and which are no surface.
+    fn judge(&mut self, noise: &NoiseModel) {
+        let Runner { params, field, pyramid, regions, merger, facets, explainer, .. } = self;
+        facets.mark(pyramid, regions, &merger.pairs, noise);
+        let grid = &mut pyramid.grids[0];
+        let planes = Planes { regions: &regions.all, noise, confidence: params.confidence };
+        explainer.find(field, grid, &planes, &merger.pairs, &facets.boxes);
+        let mut explained = explainer.is_explained.iter();
+        let is_explained = |_: &grow::Region| explained.next() == Some(&true);
+        merger.drop(grid, regions, is_explained);
+    }
+
+    /// The region of every pixel.
+    fn assign(&mut self, noise: &NoiseModel) {
+        let Runner { params, field, pyramid, regions, image, .. } = self;
+        image.resize(field.q.len(), 0);
+        pyramid.hand_up();
+        let [tiles, blocks, ..] = &pyramid.grids;
+        let planes = Planes { regions: &regions.all, noise, confidence: params.confidence };
+        assign::assign(field, [tiles, blocks], &planes, image);
     }
 }

@@ -1,0 +1,93 @@
+//! Stage "explained": regions that are no surface of their own go.
+//!
+//! In: regions and the pairs that touch. Out: fewer regions. Cells across the crease of two planes make a strip
+//! that is flat to within the noise; each of its pixels lies on one plane or the other.
+
+use super::curved::CellBox;
+use super::field::Field;
+use super::grow::Region;
+use super::merge::Pair;
+use super::planes::Planes;
+use super::tiles::{Grid, SIDE};
+use crate::group::reserve_to;
+
+/// A region goes if more than this share of its pixels lies on larger planes beside it.
+const EXPLAINED: f64 = 0.6;
+/// How many times as large those are.
+const LARGER: f64 = 2.0;
+/// A strip across a crease lies no further from either plane than this, root mean square, in standard
+/// deviations.
+const STRIP: f64 = 7.0;
+/// Most larger planes that are held against a region.
+const MOST: usize = 8;
+
+/// Finds explained regions; reuses its memory.
+#[derive(Debug, Default)]
+pub(super) struct Explainer {
+    /// For each region the larger planes beside it that may explain it.
+    larger: Vec<[u32; MOST]>,
+    counts: Vec<usize>,
+    pub(super) is_explained: Vec<bool>,
+}
+
+impl Explainer {
+    /// Finds the regions of which most pixels lie on larger planes beside them.
+    pub(super) fn find(&mut self, field: &Field, grid: &Grid, planes: &Planes<'_>, pairs: &[Pair], boxes: &[CellBox]) {
+        let Explainer { larger, counts, is_explained } = self;
+        reserve_to(larger, grid.len());
+        reserve_to(counts, grid.len());
+        reserve_to(is_explained, grid.len());
+        larger.resize(planes.regions.len(), [0; MOST]);
+        counts.resize(planes.regions.len(), 0);
+        for pair in pairs {
+            let [a, b] = pair.ids;
+            for (small, large) in [(a, b), (b, a)] {
+                let [own, other] = [small, large].map(|id| planes.region(id));
+                let count = &mut counts[small as usize];
+                if *count < MOST && is_larger(own, other) && is_near(own, other) {
+                    larger[small as usize][*count] = large;
+                    *count += 1;
+                }
+            }
+        }
+        is_explained.extend((0..planes.regions.len()).map(|id| {
+            let others = &larger[id][..counts[id]];
+            !others.is_empty() && is_explained_by(field, grid, planes, id as u32, others, &boxes[id])
+        }));
+    }
+}
+
+/// Whether another plane is much larger, and both are planes.
+fn is_larger(own: &Region, other: &Region) -> bool {
+    !own.is_curved && !other.is_curved && other.sums.n > LARGER * own.sums.n
+}
+
+/// Whether a region may be a strip on the border of a larger plane.
+fn is_near(own: &Region, larger: &Region) -> bool {
+    let theirs = larger.sums_of(own);
+    theirs.squares_about(larger.abc) <= STRIP * STRIP * own.variance
+}
+
+fn is_explained_by(field: &Field, grid: &Grid, planes: &Planes<'_>, id: u32, others: &[u32], around: &CellBox) -> bool {
+    let (mut pixels, mut by_others) = (0, 0);
+    for row in around.first[1]..=around.last[1] {
+        for column in around.first[0]..=around.last[0] {
+            let at = row * grid.columns + column;
+            if grid.region[at] != id {
+                continue;
+            }
+            let most = planes.reach(grid.q(at));
+            for v in row * SIDE..(row + 1) * SIDE {
+                for u in column * SIDE..(column + 1) * SIDE {
+                    let q = f64::from(field.q[v * field.stride + u]);
+                    let lies_on = |id: u32| (q - planes.region(id).at(u as f64, v as f64)).powi(2) <= most;
+                    if lies_on(id) {
+                        pixels += 1;
+                        by_others += u32::from(others.iter().any(|&other| lies_on(other)));
+                    }
+                }
+            }
+        }
+    }
+    f64::from(by_others) > EXPLAINED * f64::from(pixels)
+}

@@ -1,0 +1,215 @@
+//! Stage "merge": regions that one plane explains as well as two become one.
+//!
+//! In: regions as they grew, and the tiles' region numbers. Out: fewer regions, and the pairs that lie side
+//! by side with the place where they touch.
+
+use super::grow::{Region, Regions};
+use super::tiles::{Grid, NONE};
+use crate::error::{Error, Result};
+use crate::fit::Moments;
+use crate::group::reserve_to;
+use crate::select::MAX_PLANES;
+
+/// Two regions with tiles side by side, or with one tile of no region between.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair {
+    /// The smaller number and the larger.
+    pub(super) ids: [u32; 2],
+    /// Places where they touch.
+    pub(super) contacts: f64,
+    /// Sum over them of (u, v).
+    at: [f64; 2],
+    /// What merging costs ([`bend`]); NaN if it is not known.
+    cost: f64,
+}
+
+impl Pair {
+    /// Mean (u, v) of the places where they touch.
+    pub(super) fn middle(&self) -> [f64; 2] {
+        self.at.map(|sum| sum / self.contacts)
+    }
+
+    fn add(&mut self, other: &Pair) {
+        self.contacts += other.contacts;
+        self.at = [0, 1].map(|i| self.at[i] + other.at[i]);
+        self.cost = if self.cost.is_nan() { other.cost } else { self.cost };
+    }
+}
+
+/// Where a pair stands in the table of recent ones.
+fn slot([a, b]: [u32; 2]) -> usize {
+    (a.wrapping_mul(0x9e37_79b1) ^ b.wrapping_mul(0x85eb_ca77)) as usize >> 7 & (RECENT - 1)
+}
+
+/// Slots of the table of pairs that were just met; a power of two.
+const RECENT: usize = 1024;
+
+/// Merges regions; reuses its memory.
+#[derive(Debug, Default)]
+pub(super) struct Merger {
+    pub(super) pairs: Vec<Pair>,
+    /// For pairs by hash, where the pair stands that was last met there.
+    recent: Vec<u32>,
+    /// For each region the one that it becomes.
+    into: Vec<u32>,
+    has_changed: Vec<bool>,
+    order: Vec<u32>,
+}
+
+impl Merger {
+    /// Joins neighbouring regions that one plane explains as well as two, the most alike first, and leaves out
+    /// regions of fewer than `least` pixels.
+    ///
+    /// # Errors
+    /// [`Error::TooManyPlanes`] if more are left than a region image can tell apart.
+    pub(super) fn merge(&mut self, grid: &mut Grid, regions: &mut Regions, least: f64) -> Result<()> {
+        reserve_to(&mut self.pairs, 4 * grid.len());
+        for memory in [&mut self.into, &mut self.order] {
+            reserve_to(memory, 4 * grid.len());
+        }
+        reserve_to(&mut self.has_changed, grid.len());
+        self.into.extend(0..regions.all.len() as u32);
+        self.list_pairs(grid);
+        while self.merge_best(&mut regions.all) {}
+        self.drop(grid, regions, |region| region.sums.n < least);
+        match regions.all.len() {
+            found if found > MAX_PLANES => Err(Error::TooManyPlanes { found }),
+            _ => Ok(()),
+        }
+    }
+
+    fn list_pairs(&mut self, grid: &Grid) {
+        let Merger { pairs, recent, .. } = self;
+        recent.clear();
+        recent.resize(RECENT, NONE);
+        let Grid { columns, rows, region, .. } = grid;
+        let side = grid.side as f64;
+        let mut touch = |a: u32, b: u32, column: usize, row: usize| {
+            let ids = [a.min(b), a.max(b)];
+            let at = [column, row].map(|place| (place as f64 + 0.5) * side);
+            let met = Pair { ids, contacts: 1.0, at, cost: f64::NAN };
+            let recent = &mut recent[slot(ids)];
+            match pairs.get_mut(*recent as usize) {
+                Some(pair) if pair.ids == ids => pair.add(&met),
+                _ => {
+                    *recent = pairs.len() as u32;
+                    pairs.push(met);
+                }
+            }
+        };
+        for row in 0..*rows {
+            for column in 0..*columns {
+                let at = row * columns + column;
+                for (step, room) in [(1, columns - 1 - column), (*columns, rows - 1 - row)] {
+                    if region[at] != NONE && room > 0 && region[at + step] != region[at] {
+                        let is_gap = region[at + step] == NONE && room > 1;
+                        let beside = region[if is_gap { at + 2 * step } else { at + step }];
+                        if beside != NONE && beside != region[at] {
+                            touch(region[at], beside, column, row);
+                        }
+                    }
+                }
+            }
+        }
+        unite(pairs);
+    }
+
+    /// Merges the pairs that cost least, each region once; whether there were any.
+    fn merge_best(&mut self, all: &mut [Region]) -> bool {
+        let Merger { pairs, into, has_changed, order, .. } = self;
+        for pair in pairs.iter_mut().filter(|pair| pair.cost.is_nan()) {
+            let [a, b] = pair.ids.map(|id| &all[id as usize]);
+            pair.cost = bend(a, b);
+        }
+        order.clear();
+        order.extend((0..pairs.len() as u32).filter(|&at| pairs[at as usize].cost <= BEND));
+        if order.is_empty() {
+            return false;
+        }
+        order.sort_unstable_by(|&x, &y| pairs[x as usize].cost.total_cmp(&pairs[y as usize].cost).then(x.cmp(&y)));
+        has_changed.clear();
+        has_changed.resize(all.len(), false);
+        for &at in order.iter() {
+            let [a, b] = pairs[at as usize].ids.map(|id| id as usize);
+            if !has_changed[a] && !has_changed[b] {
+                let other = all[b];
+                all[a].absorb(&other);
+                into[b] = a as u32;
+                has_changed[a] = true;
+                has_changed[b] = true;
+            }
+        }
+        for pair in pairs.iter_mut() {
+            if pair.ids.iter().any(|&id| has_changed[id as usize]) {
+                let [a, b] = pair.ids.map(|id| into[id as usize]);
+                (pair.ids, pair.cost) = ([a.min(b), a.max(b)], f64::NAN);
+            }
+        }
+        pairs.retain(|pair| pair.ids[0] != pair.ids[1]);
+        unite(pairs);
+        true
+    }
+
+    /// Leaves out the regions that `goes` names or that were merged, and counts the others anew.
+    pub(super) fn drop(&mut self, grid: &mut Grid, regions: &mut Regions, mut goes: impl FnMut(&Region) -> bool) {
+        let Merger { pairs, into, order: number, .. } = self;
+        number.clear();
+        let mut kept = 0;
+        number.extend(regions.all.iter().enumerate().map(|(id, region)| {
+            let is_kept = !goes(region) && into[id] == id as u32;
+            kept += u32::from(is_kept);
+            if is_kept { kept - 1 } else { NONE }
+        }));
+        pairs.iter_mut().for_each(|pair| pair.ids = pair.ids.map(|id| number[id as usize]));
+        pairs.retain(|pair| !pair.ids.contains(&NONE));
+        // A region is merged into one before it, whose new number is known by then.
+        for id in 0..into.len() {
+            into[id] = if into[id] as usize == id { number[id] } else { into[into[id] as usize] };
+        }
+        grid.region.iter_mut().filter(|region| **region != NONE).for_each(|region| *region = into[*region as usize]);
+        let mut numbers = number.iter();
+        regions.all.retain(|_| numbers.next() != Some(&NONE));
+        into.clear();
+        into.extend(0..regions.all.len() as u32);
+    }
+}
+
+/// Makes one pair of those that are the same.
+fn unite(pairs: &mut Vec<Pair>) {
+    pairs.sort_unstable_by_key(|pair| pair.ids);
+    pairs.dedup_by(|next, pair| {
+        let same = next.ids == pair.ids;
+        if same {
+            pair.add(next);
+        }
+        same
+    });
+}
+
+impl Region {
+    fn absorb(&mut self, other: &Region) {
+        self.sums.merge(&self.sums_of(other));
+        self.variance += other.variance;
+        self.refit();
+    }
+
+    /// Sums of another region about this one's origin.
+    pub(super) fn sums_of(&self, other: &Region) -> Moments {
+        let [u, v, q] = self.origin;
+        other.sums.moved([other.origin[0] - u, other.origin[1] - v, other.origin[2] - q])
+    }
+}
+
+/// Two regions are one plane if their joint plane adds no more than this to the mean squared residual of
+/// either, in variances.
+const BEND: f64 = 0.5;
+
+/// What a joint plane adds to the mean squared residual of the region that it suits less, in variances.
+fn bend(a: &Region, b: &Region) -> f64 {
+    let theirs = a.sums_of(b);
+    let mut both = a.sums;
+    both.merge(&theirs);
+    let Some(joint) = both.fit() else { return f64::INFINITY };
+    let added = |sums: &Moments, own: f64, variance: f64| (sums.squares_about(joint.abc) - own) / variance;
+    added(&a.sums, a.squares, a.variance).max(added(&theirs, b.squares, b.variance))
+}
