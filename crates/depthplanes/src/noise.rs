@@ -1,8 +1,17 @@
 //! What a sensor's error is at a given range.
 //!
-//! In: what is known of the sensor ([`SensorNoise`]) and the steps that its values come in. Out: the standard deviation of one pixel in the space where planes
-//! are affine ([`Space`]): inverse depth for depth maps, the value itself for all others. Structured
-//! light and stereo err by a constant there, time of flight by a constant in depth; both parts add.
+//! In: what is known of the sensor ([`SensorNoise`]), what the map's numbers mean, and the steps that they come in.
+//! Out: a [`NoiseModel`]: the variance of one pixel in the space where planes are affine ([`Space`]), inverse depth
+//! for depth maps, the value itself for all others. Structured light and stereo err by a constant there, time of
+//! flight by a constant in depth; both parts add. [`Estimator`] finds it out from frames.
+
+mod estimate;
+mod steps;
+mod table;
+
+pub(crate) use estimate::{Blocks, SIDE as BLOCK_SIDE};
+pub use estimate::{Estimate, Estimator};
+pub use table::{MAX_ROWS, NoiseTable};
 
 use crate::camera::Measure;
 
@@ -35,10 +44,21 @@ impl Space {
             Space::Value => value,
         }
     }
+
+    /// What a difference of one map unit is in q, at q: |dq / dvalue|.
+    #[inline]
+    pub fn unit(self, q: f64) -> f64 {
+        match self {
+            Space::InverseDepth { metres } => metres * q * q,
+            Space::Value => 1.0,
+        }
+    }
 }
 
-/// What a sensor's maker or a calibration says of its error: the standard deviation of one pixel.
+/// What a sensor's maker or a calibration says of its error: the standard deviation of one pixel. Rounding to the
+/// map's steps comes on top.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a handful exist at a time, and being `Copy` keeps a `Sensor` plain")]
 pub enum SensorNoise {
     /// Of depth z: `base + growth z^2`, metres.
     Depth {
@@ -52,20 +72,32 @@ pub enum SensorNoise {
         /// Map units.
         sigma: f64,
     },
+    /// Of depth, by a table over the range.
+    Table(NoiseTable),
 }
 
-/// Standard deviation of one pixel's q: `constant + square q^2`, never below what rounding alone makes.
-///
-/// An error of depth of `s(z) = base + growth z^2` metres is `s / z^2 = growth + base q^2` in inverse
-/// depth: `constant` is the growth with the range, `square` the error at range 0.
+impl SensorNoise {
+    /// Standard deviation of depth at range `depth_m`, metres; `None` for [`SensorNoise::Value`], which takes a
+    /// measure to become one ([`NoiseModel::depth_sigma_m`]).
+    pub fn depth_sigma_m(&self, depth_m: f64) -> Option<f64> {
+        match self {
+            SensorNoise::Depth { base, growth } => Some(base + growth * depth_m * depth_m),
+            SensorNoise::Table(table) => Some(table.sigma_m(depth_m)),
+            SensorNoise::Value { .. } => None,
+        }
+    }
+}
+
+/// Variance of one pixel's q: the sensor's own error and the rounding of its values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseModel {
-    /// Part that does not depend on q, units of q.
-    pub constant: f64,
-    /// Part that grows with q squared, 1 / units of q; 0 in [`Space::Value`].
-    pub square: f64,
-    /// Rounding of whole map units, same form.
-    rounding: [f64; 2],
+    noise: SensorNoise,
+    space: Space,
+    /// Inverse depth, 1/m, is `slope q + offset`.
+    slope: f64,
+    offset: f64,
+    /// Steps of the values, map units.
+    step: f64,
 }
 
 /// What rounding to steps may do, in steps, to all pixels of a small patch at once: on a slow ramp they lie on one
@@ -73,32 +105,80 @@ pub struct NoiseModel {
 const ROUNDING: f64 = 0.5;
 
 impl NoiseModel {
-    /// The model of a sensor whose error is known; `None` if it is stated for another kind of map.
-    pub fn of_sensor(space: Space, noise: SensorNoise, step: f64) -> Option<Self> {
-        match (space, noise) {
-            (Space::InverseDepth { .. }, SensorNoise::Depth { base, growth }) => {
-                Some(Self::new(space, growth, base, step))
+    /// The model of a map whose numbers mean `measure` and come in steps of `step` map units (0 for values that are not
+    /// rounded). `None` if the noise is stated for another kind of map: of disparity for depth, or of depth for
+    /// disparity of an unknown rig.
+    pub fn new(measure: Measure, noise: SensorNoise, step: f64) -> Option<Self> {
+        let (slope, offset) = match (measure, noise) {
+            (Measure::Depth { .. }, SensorNoise::Value { .. }) => return None,
+            (Measure::Depth { .. }, _) => (1.0, 0.0),
+            (Measure::InverseDepth { slope, offset }, _) => (slope, offset),
+            (Measure::Disparity, SensorNoise::Value { .. }) => (f64::NAN, f64::NAN),
+            (Measure::Disparity, _) => return None,
+        };
+        Some(NoiseModel { noise, space: Space::of(measure), slope, offset, step })
+    }
+
+    /// The same noise of values that are not rounded.
+    pub fn without_rounding(self) -> Self {
+        NoiseModel { step: 0.0, ..self }
+    }
+
+    /// Variance of one pixel's q, rounding taken at its worst.
+    #[inline]
+    pub fn variance(&self, q: f64) -> f64 {
+        let rounding = ROUNDING * self.step * self.space.unit(q);
+        let single = 2e-7 * q; // single precision, in which q is kept
+        let sensor = self.sensor_sigma(q);
+        sensor * sensor + rounding * rounding + single * single
+    }
+
+    /// Standard deviation of q by the sensor's own error, rounding left out.
+    ///
+    /// An error of depth of `s` metres is `s p^2` in inverse depth p, and that over the slope in units of q.
+    #[inline]
+    pub fn sensor_sigma(&self, q: f64) -> f64 {
+        let inverse_depth = || (self.slope * q + self.offset).max(0.0);
+        match &self.noise {
+            SensorNoise::Value { sigma } => *sigma,
+            SensorNoise::Depth { base, growth } => {
+                let p = inverse_depth();
+                (growth + base * p * p) / self.slope.abs()
             }
-            (Space::Value, SensorNoise::Value { sigma }) => Some(Self::new(space, sigma, 0.0, step)),
-            _ => None,
+            SensorNoise::Table(table) => {
+                let p = inverse_depth();
+                table.sigma_m(p.recip()) * p * p / self.slope.abs()
+            }
         }
     }
 
-    /// A model of a map whose values come in steps of so many map units; 0 for values that are not rounded.
-    pub fn new(space: Space, constant: f64, square: f64, step: f64) -> Self {
-        let rounding = match space {
-            Space::InverseDepth { metres } => [0.0, ROUNDING * step * metres],
-            Space::Value => [ROUNDING * step, 0.0],
-        };
-        NoiseModel { constant, square, rounding }
+    /// Standard deviation of depth at range `depth_m` by the sensor's own error, metres; `None` for disparity of an
+    /// unknown rig.
+    pub fn depth_sigma_m(&self, depth_m: f64) -> Option<f64> {
+        let sigma = self.sensor_sigma((depth_m.recip() - self.offset) / self.slope);
+        let sigma_m = sigma * self.slope.abs() * depth_m * depth_m;
+        sigma_m.is_finite().then_some(sigma_m)
     }
 
-    /// Variance of one pixel's q.
-    #[inline(always)]
-    pub fn variance(&self, q: f64) -> f64 {
-        let sensor = self.constant + self.square * q * q;
-        let rounding = self.rounding[0] + self.rounding[1] * q * q;
-        let single = 2e-7 * q; // single precision, in which q is kept
-        sensor * sensor + rounding * rounding + single * single
+    /// The variance that a pixel near q brings into a fit over many: that of the sensor, and that of rounding, which
+    /// counts more the more pixels share its error. q changes by `gradient` per column and per row over a region of
+    /// `extent` columns and rows.
+    ///
+    /// Rounding to steps D has the variance D^2 / 12. Of it the part `exp(-(2 pi sigma / D)^2)` follows the
+    /// signal, the rest is as good as white, since the sensor's noise sigma dithers it (Widrow and Kollar,
+    /// *Quantization Noise*, 2008: the first harmonic of the error's mean). The part that follows the signal is alike
+    /// over the pixels of one level: `D / gradient` of them along each axis, at most the region. Our choice; it is on
+    /// the safe side, since levels that are crossed often cancel more than independent draws would.
+    #[inline]
+    pub fn variance_in_fits(&self, q: f64, gradient: [f64; 2], extent: [f64; 2]) -> f64 {
+        let (sigma, step) = (self.sensor_sigma(q), self.step * self.space.unit(q));
+        let sensor = sigma * sigma;
+        if step == 0.0 {
+            return sensor;
+        }
+        let dither = std::f64::consts::TAU * sigma / step;
+        let shared = if dither < 4.0 { (-dither * dither).exp() } else { 0.0 };
+        let alike = |axis: usize| (step / gradient[axis].abs()).min(extent[axis]).max(1.0);
+        sensor + step * step / 12.0 * (1.0 + shared * (alike(0) * alike(1) - 1.0))
     }
 }

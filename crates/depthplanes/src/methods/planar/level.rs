@@ -1,95 +1,47 @@
 //! How noisy a sensor is, from one frame of it.
 //!
-//! In: the scatter of tiles about their own planes. Out: a noise model. Most tiles of most maps lie on one
-//! smooth surface, so the lower half of the scatter in each stretch of q is noise.
+//! In: the tiles of a map. Out: a noise for [`crate::noise::NoiseModel`], estimated from blocks of tiles as
+//! [`crate::noise::Estimator`] does from pixels.
 
 use super::tiles::{Layer, SIDE};
 use crate::fit::Moments;
-use crate::group::reserve_to;
-use crate::noise::{NoiseModel, Space};
+use crate::noise::{BLOCK_SIDE, Blocks, SensorNoise, Space};
 
-/// Stretches of q, each with as many blocks.
-const BINS: usize = 8;
-/// Tiles of a block's side. A block is large enough to span the steps of a sensor that rounds coarsely:
-/// within one step a tile shows no noise at all.
-const BLOCK: usize = 3;
-/// Share of the blocks of a stretch that are taken to be flat.
-const FLAT: f64 = 0.5;
+/// Tiles of a block's side.
+const TILES: usize = BLOCK_SIDE / SIDE;
 
 /// Memory of this stage.
 #[derive(Debug, Default)]
 pub(super) struct Level {
-    /// Mean q and scatter of each block.
-    blocks: Vec<(f64, f64)>,
+    blocks: Blocks,
 }
 
 impl Level {
     /// Makes room for a map with so many tiles.
     pub(super) fn prepare(&mut self, tiles: usize) {
-        reserve_to(&mut self.blocks, tiles);
+        self.blocks.prepare(tiles);
     }
 
-    /// The noise model that explains the scatter of a map whose values come in steps of so many map units.
-    pub(super) fn estimate(&mut self, layer: &Layer, space: Space, step: f64) -> NoiseModel {
-        let blocks = &mut self.blocks;
-        blocks.clear();
-        for row in (0..layer.rows.saturating_sub(BLOCK - 1)).step_by(BLOCK) {
-            let columns = (0..layer.columns.saturating_sub(BLOCK - 1)).step_by(BLOCK);
-            blocks.extend(columns.filter_map(|column| scatter(layer, column, row)));
+    /// The noise that explains the scatter of a map whose values come in steps of so many map units.
+    pub(super) fn estimate(&mut self, layer: &Layer, space: Space, step: f64) -> SensorNoise {
+        for row in (0..layer.rows.saturating_sub(TILES - 1)).step_by(TILES) {
+            for column in (0..layer.columns.saturating_sub(TILES - 1)).step_by(TILES) {
+                let first = &layer.tiles[row * layer.columns + column];
+                self.blocks.add(&sums(layer, column, row), first.q, space, step);
+            }
         }
-        blocks.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        let size = blocks.len().div_ceil(BINS).max(1);
-        let mut points = [(0.0, 0.0); BINS];
-        let mut count = 0;
-        for (bin, point) in blocks.chunks_mut(size).zip(&mut points) {
-            let q = bin[bin.len() / 2].0;
-            bin.sort_unstable_by(|a, b| a.1.total_cmp(&b.1));
-            *point = (q, bin[(bin.len() as f64 * FLAT) as usize].1);
-            count += 1;
-        }
-        let [constant, square] = non_negative(&points[..count], space);
-        NoiseModel::new(space, constant, square, step)
+        self.blocks.noise(space).0
     }
 }
 
-/// Mean q of a block and its root mean square residual; `None` if too much is missing.
-fn scatter(layer: &Layer, column: usize, row: usize) -> Option<(f64, f64)> {
+/// The sums of a block of tiles about its first tile's origin.
+fn sums(layer: &Layer, column: usize, row: usize) -> Moments {
     let first = &layer.tiles[row * layer.columns + column];
     let mut sums = Moments::default();
-    for y in row..row + BLOCK {
-        for tile in &layer.tiles[y * layer.columns + column..][..BLOCK] {
+    for y in row..row + TILES {
+        for tile in &layer.tiles[y * layer.columns + column..][..TILES] {
             sums.merge(&tile.sums.moved([tile.u - first.u, tile.v - first.v, tile.q - first.q]));
         }
     }
-    let full = (BLOCK * BLOCK * SIDE * SIDE) as f64;
-    let fit = sums.fit().filter(|fit| fit.n >= 0.8 * full)?;
-    Some((first.q + sums.q / sums.n, fit.rms))
-}
-
-/// Least squares of `sigma = constant + square q^2`, neither below 0, each point weighed by its size.
-fn non_negative(points: &[(f64, f64)], space: Space) -> [f64; 2] {
-    if points.is_empty() {
-        return [0.0; 2];
-    }
-    let (mut n, mut x, mut xx, mut y, mut xy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for &(q, sigma) in points {
-        let (square, weight) = (q * q, 1.0 / (sigma * sigma).max(1e-12));
-        n += weight;
-        x += weight * square;
-        xx += weight * square * square;
-        y += weight * sigma;
-        xy += weight * square * sigma;
-    }
-    if space == Space::Value {
-        return [y / n, 0.0];
-    }
-    let det = n * xx - x * x;
-    let (constant, square) = ((xx * y - x * xy) / det, (n * xy - x * y) / det);
-    if det.is_nan() || det <= 1e-9 * n * xx || square < 0.0 {
-        [y / n, 0.0]
-    } else if constant < 0.0 {
-        [0.0, xy / xx]
-    } else {
-        [constant, square]
-    }
+    sums
 }

@@ -202,9 +202,10 @@ impl Runner {
         facets.prepare(tiles);
         level.prepare(tiles);
         reserve_to(explained, 2 * tiles);
-        let stated = params.noise(space).or(sensor.noise);
-        let noise = stated.and_then(|noise| NoiseModel::of_sensor(space, noise, field.step));
-        noise.unwrap_or_else(|| level.estimate(&layers[0], space, field.step))
+        let model = |noise| NoiseModel::new(sensor.measure, noise, field.step);
+        let stated = params.noise(space).or(sensor.noise).and_then(model);
+        let estimated = || model(level.estimate(&layers[0], space, field.step));
+        stated.or_else(estimated).expect("an estimate is of the map's own kind")
     }
 
     /// One round of growth, over the pixels that no plane explains yet.
