@@ -160,25 +160,62 @@ impl NoiseModel {
         sigma_m.is_finite().then_some(sigma_m)
     }
 
-    /// The variance that a pixel near q brings into a fit over many: that of the sensor, and that of rounding, which
-    /// counts more the more pixels share its error. q changes by `gradient` per column and per row over a region of
-    /// `extent` columns and rows.
+    /// The variance that a pixel near q brings into the fit of a patch: that of the sensor, and that of rounding, which
+    /// counts more where pixels share its error.
     ///
     /// Rounding to steps D has the variance D^2 / 12. Of it the part `exp(-(2 pi sigma / D)^2)` follows the
     /// signal, the rest is as good as white, since the sensor's noise sigma dithers it (Widrow and Kollar,
-    /// *Quantization Noise*, 2008: the first harmonic of the error's mean). The part that follows the signal is alike
-    /// over the pixels of one level: `D / gradient` of them along each axis, at most the region. Our choice; it is on
-    /// the safe side, since levels that are crossed often cancel more than independent draws would.
+    /// *Quantization Noise*, 2008: the first harmonic of the error's mean). [`Patch::alike`] says how many pixels share
+    /// the part that follows the signal.
     #[inline]
-    pub fn variance_in_fits(&self, q: f64, gradient: [f64; 2], extent: [f64; 2]) -> f64 {
+    pub fn variance_in(&self, patch: &Patch, q: f64) -> f64 {
         let (sigma, step) = (self.sensor_sigma(q), self.step * self.space.unit(q));
         let sensor = sigma * sigma;
         if step == 0.0 {
             return sensor;
         }
+        let white = step * step / 12.0;
         let dither = std::f64::consts::TAU * sigma / step;
-        let shared = if dither < 4.0 { (-dither * dither).exp() } else { 0.0 };
-        let alike = |axis: usize| (step / gradient[axis].abs()).min(extent[axis]).max(1.0);
-        sensor + step * step / 12.0 * (1.0 + shared * (alike(0) * alike(1) - 1.0))
+        if dither > 4.0 {
+            return sensor + white; // one part in ten million follows the signal
+        }
+        let alike = patch.alike(step);
+        if alike == 1.0 {
+            return sensor + white;
+        }
+        sensor + white * (1.0 + (-dither * dither).exp() * (alike - 1.0))
+    }
+}
+
+/// Pixels that one plane is fitted to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Patch {
+    /// What q changes by per column and per row.
+    pub gradient: [f64; 2],
+    /// Columns and rows of the box around them.
+    pub extent: [f64; 2],
+    /// How many they are.
+    pub pixels: f64,
+}
+
+impl Patch {
+    /// How many pixels count as one, since they share the error of rounding to steps: 1 if all err independently, all if
+    /// they lie on one level.
+    ///
+    /// Along an axis the error is a sawtooth of period P = step / gradient. A line of L pixels sums to its amplitude
+    /// times P / pi (the first harmonic, over the last period that is cut off), at most times L; to that of L
+    /// independent draws if the period is below two pixels. Lines within a period of each other sum alike, others
+    /// independently, as the border of a patch is ragged. Both axes bound the sum of the whole (our derivation).
+    #[inline]
+    fn alike(&self, step: f64) -> f64 {
+        let period = self.gradient.map(|gradient| step / gradient.abs());
+        let [columns, rows] = self.extent;
+        let line = |period: f64, length: f64| {
+            if period < 2.0 { length } else { (period / std::f64::consts::PI).min(length).powi(2) }
+        };
+        let lines = |period: f64, length: f64| period.clamp(1.0, length);
+        let along_rows = line(period[0], columns) * lines(period[1], rows) / columns;
+        let along_columns = line(period[1], rows) * lines(period[0], columns) / rows;
+        along_rows.min(along_columns).clamp(1.0, self.pixels)
     }
 }

@@ -1,6 +1,6 @@
 //! Noise models against their formulas, and estimates against the noise of made-up scenes.
 
-use depthplanes::noise::{Estimate, Estimator, MAX_ROWS, NoiseModel, NoiseTable, SensorNoise};
+use depthplanes::noise::{Estimate, Estimator, MAX_ROWS, NoiseModel, NoiseTable, Patch, SensorNoise};
 use depthplanes::scene::Spec;
 use depthplanes::{DepthView, Error, Measure};
 
@@ -153,15 +153,18 @@ fn tables_hold_at_their_ends_and_refuse_what_is_none() {
 
 #[test]
 fn rounding_counts_by_how_many_pixels_share_it() {
-    let wide = [200.0, 100.0];
     let model = |sigma: f64| NoiseModel::new(Measure::Disparity, SensorNoise::Value { sigma }, 1.0).unwrap();
+    let patch = |gradient| Patch { gradient, extent: [200.0, 100.0], pixels: 15_000.0 };
     let twelfth = 1.0 / 12.0;
     // A flat patch is off by one and the same error, whatever its size.
-    assert_eq!(model(0.0).variance_in_fits(9.0, [0.0, 0.0], wide), twelfth * 200.0 * 100.0);
-    // Ten columns share a level, and all rows.
-    assert!((model(0.0).variance_in_fits(9.0, [0.1, 0.0], wide) - twelfth * 10.0 * 100.0).abs() < 1e-9);
-    // A steep ramp, or noise of half a step, leaves nothing to share.
-    assert_eq!(model(0.0).variance_in_fits(9.0, [3.0, -2.0], wide), twelfth);
-    let dithered = model(0.5).variance_in_fits(9.0, [0.1, 0.1], wide);
+    assert_eq!(model(0.0).variance_in(&patch([0.0, 0.0]), 9.0), twelfth * 15_000.0);
+    // A ramp along the rows, ten columns a level: all rows sum alike, each to a sawtooth's (10 / pi)^2.
+    let ramp = (10.0 / std::f64::consts::PI).powi(2) * 100.0 / 200.0;
+    assert!((model(0.0).variance_in(&patch([0.1, 0.0]), 9.0) - twelfth * ramp).abs() < 1e-9);
+    // A steep ramp along the columns alone leaves the columns alike.
+    assert!((model(0.0).variance_in(&patch([0.0, 3.0]), 9.0) - twelfth * 200.0).abs() < 1e-9);
+    // A steep ramp along both, or noise of half a step, leaves nothing to share.
+    assert_eq!(model(0.0).variance_in(&patch([3.0, -2.0]), 9.0), twelfth);
+    let dithered = model(0.5).variance_in(&patch([0.1, 0.1]), 9.0);
     assert!((dithered / (0.25 + twelfth) - 1.0).abs() < 0.01, "{dithered}");
 }

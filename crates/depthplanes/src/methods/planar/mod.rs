@@ -12,7 +12,7 @@ mod tiles;
 
 use super::{Job, Method, MethodInfo, Param, ParamKind};
 use crate::camera::Sensor;
-use crate::describe::Describer;
+use crate::describe::{Describer, Seen};
 use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::group::{Grouper, LinkRule, reserve_to};
@@ -180,7 +180,8 @@ impl Runner {
         job.done("select");
         let runs = selection.runs(groups);
         describer.tally(&map, runs, 0, &job.sensor);
-        describer.describe(&map, runs, &job.sensor, field.valid_pixels, &mut out.planes);
+        let seen = Seen { sensor: &job.sensor, noise: Some(&noise), valid_pixels: field.valid_pixels };
+        describer.describe(&map, runs, &seen, &mut out.planes);
         job.done("fit");
         selection.paint(groups, &mut out.labels);
         (out.width, out.height) = (map.width(), map.height());
