@@ -98,6 +98,8 @@ pub struct NoiseModel {
     offset: f64,
     /// Steps of the values, map units.
     step: f64,
+    /// Whether the noise holds what rounding does on average.
+    is_scatter: bool,
 }
 
 /// What rounding to steps may do, in steps, to all pixels of a small patch at once: on a slow ramp they lie on one
@@ -116,12 +118,12 @@ impl NoiseModel {
             (Measure::Disparity, SensorNoise::Value { .. }) => (f64::NAN, f64::NAN),
             (Measure::Disparity, _) => return None,
         };
-        Some(NoiseModel { noise, space: Space::of(measure), slope, offset, step })
+        Some(NoiseModel { noise, space: Space::of(measure), slope, offset, step, is_scatter: false })
     }
 
-    /// The same noise of values that are not rounded.
-    pub fn without_rounding(self) -> Self {
-        NoiseModel { step: 0.0, ..self }
+    /// The same, its noise being the scatter that a map shows, with what rounding does on average.
+    pub(crate) fn of_scatter(self) -> Self {
+        NoiseModel { is_scatter: true, ..self }
     }
 
     /// Variance of one pixel's q, rounding taken at its worst.
@@ -133,7 +135,7 @@ impl NoiseModel {
         sensor * sensor + rounding * rounding + single * single
     }
 
-    /// Standard deviation of q by the sensor's own error, rounding left out.
+    /// Standard deviation of q by the noise as stated, rounding left out.
     ///
     /// An error of depth of `s` metres is `s p^2` in inverse depth p, and that over the slope in units of q.
     #[inline]
@@ -170,12 +172,12 @@ impl NoiseModel {
     #[inline]
     pub fn variance_in(&self, patch: &Patch, q: f64) -> f64 {
         let (sigma, step) = (self.sensor_sigma(q), self.step * self.space.unit(q));
-        let sensor = sigma * sigma;
         if step == 0.0 {
-            return sensor;
+            return sigma * sigma;
         }
         let white = step * step / 12.0;
-        let dither = std::f64::consts::TAU * sigma / step;
+        let sensor = if self.is_scatter { (sigma * sigma - white).max(0.0) } else { sigma * sigma };
+        let dither = std::f64::consts::TAU * sensor.sqrt() / step;
         if dither > 4.0 {
             return sensor + white; // one part in ten million follows the signal
         }

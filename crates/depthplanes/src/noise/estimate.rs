@@ -63,11 +63,13 @@ impl Blocks {
         }
     }
 
-    /// The noise that explains the scatter, with the lowest and the highest q; 0 without a block.
+    /// The noise that explains the scatter, and the q that a fortieth of the blocks lie below and above; 0 without a
+    /// block.
     pub(crate) fn noise(&mut self, space: Space) -> (SensorNoise, [f64; 2]) {
         let blocks = &mut self.all;
         blocks.sort_unstable_by(|a, b| a.q.total_cmp(&b.q).then(a.scatter.total_cmp(&b.scatter)));
-        let range = [blocks.first(), blocks.last()].map(|block| block.map_or(0.0, |block| block.q));
+        let few = blocks.len() / 40;
+        let range = [blocks.get(few), blocks.iter().nth_back(few)].map(|block| block.map_or(0.0, |block| block.q));
         let size = blocks.len().div_ceil(BINS).max(1);
         let mut points = [(0.0, 0.0, 0.0); BINS];
         let mut count = 0;
@@ -128,7 +130,8 @@ pub struct Estimate {
     pub blocks: usize,
     /// What the maps' numbers mean; of several depth maps with different units, the last one's.
     pub measure: Measure,
-    /// Lowest and highest mean of a block: 1/m for depth maps, map units for all others.
+    /// Where all but a fortieth of the blocks lie on either side, low and high: 1/m for depth maps, map units for all
+    /// others.
     pub range: [f64; 2],
 }
 

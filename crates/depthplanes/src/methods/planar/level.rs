@@ -1,7 +1,7 @@
 //! How noisy a sensor is, from one frame of it.
 //!
-//! In: the tiles of a map. Out: a noise for [`crate::noise::NoiseModel`], estimated from blocks of tiles as
-//! [`crate::noise::Estimator`] does from pixels.
+//! In: the tiles of a map. Out: its scatter, estimated from blocks of tiles as [`crate::noise::Estimator`] does from
+//! pixels, but with what rounding does to them: the tolerance of the method is for both.
 
 use super::tiles::{Layer, SIDE};
 use crate::fit::Moments;
@@ -22,12 +22,12 @@ impl Level {
         self.blocks.prepare(tiles);
     }
 
-    /// The noise that explains the scatter of a map whose values come in steps of so many map units.
-    pub(super) fn estimate(&mut self, layer: &Layer, space: Space, step: f64) -> SensorNoise {
+    /// The noise that explains the scatter of a map, rounding included.
+    pub(super) fn estimate(&mut self, layer: &Layer, space: Space) -> SensorNoise {
         for row in (0..layer.rows.saturating_sub(TILES - 1)).step_by(TILES) {
             for column in (0..layer.columns.saturating_sub(TILES - 1)).step_by(TILES) {
                 let first = &layer.tiles[row * layer.columns + column];
-                self.blocks.add(&sums(layer, column, row), first.q, space, step);
+                self.blocks.add(&sums(layer, column, row), first.q, space, 0.0);
             }
         }
         self.blocks.noise(space).0

@@ -205,7 +205,7 @@ impl Runner {
         reserve_to(explained, 2 * tiles);
         let model = |noise| NoiseModel::new(sensor.measure, noise, field.step);
         let stated = params.noise(space).or(sensor.noise).and_then(model);
-        let estimated = || model(level.estimate(&layers[0], space, field.step));
+        let estimated = || Some(model(level.estimate(&layers[0], space))?.of_scatter());
         stated.or_else(estimated).expect("an estimate is of the map's own kind")
     }
 
