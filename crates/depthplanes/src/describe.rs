@@ -6,7 +6,7 @@
 
 use crate::camera::{Intrinsics, Measure, Sensor};
 use crate::detection::{CovarianceSource, MapFit, MetricPlane, PixelBox, Plane, share};
-use crate::fit::{self, AffineFit, Moments, RunSums, VarianceSums};
+use crate::fit::{self, AffineFit, Moments, RunSums};
 use crate::group::vectorised;
 use crate::map::{DepthView, Pixel};
 use crate::noise::{NoiseModel, Patch};
@@ -64,8 +64,6 @@ struct Distances {
     squares: f64,
     /// Sum of the points, metres.
     point: [f64; 3],
-    /// Variances of q about the mean (u, v), where the noise is known.
-    variances: VarianceSums,
     /// Whether some pixel lies at or behind infinity, which leaves the plane without metric values.
     behind_infinity: bool,
 }
@@ -137,7 +135,7 @@ impl Describer {
         seen: &Seen<'_>,
         planes: &mut Vec<Plane>,
     ) {
-        let Seen { sensor, noise, valid_pixels } = *seen;
+        let Seen { sensor, valid_pixels, .. } = *seen;
         planes.clear();
         planes.reserve(self.tallies.capacity());
         self.distances.clear();
@@ -150,13 +148,10 @@ impl Describer {
             }
             _ => (),
         }
-        if let Some(noise) = noise.filter(|_| !self.distances.is_empty()) {
-            self.sum_variances(runs, sensor, noise);
-        }
         planes.extend((1..).zip(&self.tallies).map(|(label, tally)| {
             let fit =
                 tally.fit.map(|fit| MapFit { gradient: [fit.abc[0], fit.abc[1]], offset: fit.abc[2], rms: fit.rms });
-            let metric = || self.distances.get(usize::from(label) - 1)?.metric(tally, sensor);
+            let metric = || self.distances.get(usize::from(label) - 1)?.metric(tally, seen);
             Plane {
                 label,
                 pixel_count: tally.pixel_count,
@@ -167,21 +162,6 @@ impl Describer {
                 metric: metric(),
             }
         }));
-    }
-
-    /// Sums the variances that the noise expects of every pixel, a run at a time: over a run they are close to a
-    /// parabola.
-    fn sum_variances(&mut self, runs: &[LabelledRun], sensor: &Sensor, noise: &NoiseModel) {
-        for run in runs {
-            let at = usize::from(run.label) - 1;
-            if let Some((fit, patch)) = self.tallies[at].patch(sensor) {
-                let (first, last, v) = (f64::from(run.u_first), f64::from(run.u_last), f64::from(run.v));
-                let variances = [first, (first + last) / 2.0, last].map(|u| noise.variance_in(&patch, fit.at(u, v)));
-                let [mean_u, mean_v] = fit.mean();
-                let sums = &mut self.distances[at].variances;
-                sums.add_run(first - mean_u, v - mean_v, last - first + 1.0, variances);
-            }
-        }
     }
 
     fn measure_distances<T: Pixel>(
@@ -243,15 +223,25 @@ impl Tally {
 }
 
 impl Tally {
-    /// The fit in the space where the noise is known, and what of its pixels that depends on.
-    fn patch(&self, sensor: &Sensor) -> Option<(AffineFit, Patch)> {
-        let fit = match sensor.measure {
-            Measure::Depth { .. } => self.inverse_depth?,
-            _ => self.fit?,
+    /// Covariance of the coefficients in inverse depth by the noise; larger if the residuals are, by more than three
+    /// standard deviations of their chi-squared. `None` if the noise is 0.
+    fn covariance_by(&self, noise: &NoiseModel, sensor: &Sensor) -> Option<[[f64; 3]; 3]> {
+        // Noise is known in map units where these are affine in inverse depth.
+        let (fit, slope) = match sensor.measure {
+            Measure::Depth { .. } => (self.inverse_depth?, 1.0),
+            Measure::InverseDepth { slope, .. } => (self.fit?, slope),
+            Measure::Disparity => return None,
         };
         let PixelBox { u_min, v_min, u_max, v_max } = self.bounding_box;
         let extent = [u_max - u_min + 1, v_max - v_min + 1].map(f64::from);
-        Some((fit, Patch { gradient: [fit.abc[0], fit.abc[1]], extent, pixels: fit.n }))
+        let patch = Patch { gradient: [fit.abc[0], fit.abc[1]], extent, pixels: fit.n };
+        let (covariance, expected) = fit.covariance_by(|q| noise.variance_in(&patch, q));
+        if expected <= 0.0 {
+            return None;
+        }
+        let ratio = fit.variance() / expected;
+        let excess = if ratio > 1.0 + 3.0 * (2.0 / fit.n).sqrt() { ratio } else { 1.0 };
+        Some(covariance.map(|row| row.map(|x| x * excess * slope * slope)))
     }
 }
 
@@ -313,12 +303,12 @@ impl Distances {
 
     /// The metric plane: a point's distance from it is z |q - q of the plane| times the plane's
     /// distance from the camera, since n . P + d = d (1 - z m . r).
-    fn metric(&self, tally: &Tally, sensor: &Sensor) -> Option<MetricPlane> {
-        let camera = &sensor.intrinsics?;
+    fn metric(&self, tally: &Tally, seen: &Seen<'_>) -> Option<MetricPlane> {
+        let camera = &seen.sensor.intrinsics?;
         let fit = tally.inverse_depth.filter(|_| !self.behind_infinity)?;
         let plane = fit::hessian(&fit, camera)?;
         let n = tally.pixel_count as f64;
-        let (covariance, covariance_from) = match self.covariance_by_noise(tally, sensor) {
+        let (covariance, covariance_from) = match seen.noise.and_then(|noise| tally.covariance_by(noise, seen.sensor)) {
             Some(covariance) => (covariance, CovarianceSource::Noise),
             None => (fit.covariance(), CovarianceSource::Residuals),
         };
@@ -329,23 +319,5 @@ impl Distances {
             covariance: fit::metric_covariance(fit.abc, &covariance, camera),
             covariance_from,
         })
-    }
-
-    /// Covariance of the coefficients in inverse depth by the noise; larger if the residuals are, by more than three
-    /// standard deviations of their chi-squared. `None` if the noise is not known, or is 0.
-    fn covariance_by_noise(&self, tally: &Tally, sensor: &Sensor) -> Option<[[f64; 3]; 3]> {
-        let (fit, _) = tally.patch(sensor)?;
-        let expected = self.variances.n / fit.n;
-        if expected <= 0.0 {
-            return None;
-        }
-        let ratio = fit.variance() / expected;
-        let excess = if ratio > 1.0 + 3.0 * (2.0 / fit.n).sqrt() { ratio } else { 1.0 };
-        let slope = match sensor.measure {
-            Measure::InverseDepth { slope, .. } => slope,
-            _ => 1.0,
-        };
-        let scale = excess * slope * slope;
-        Some(fit.covariance_by(&self.variances).map(|row| row.map(|x| x * scale)))
     }
 }

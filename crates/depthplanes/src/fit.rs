@@ -212,50 +212,6 @@ impl RunSums {
     }
 }
 
-/// Sums of the variances of points relative to an origin of the owner's choice: `A^T S A` of least squares, A being the
-/// rows (u, v, 1) and S the points' variances on a diagonal.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct VarianceSums {
-    /// Sum of the variances.
-    pub n: f64,
-    /// Sum of u times the variance, and so on.
-    pub u: f64,
-    /// v.
-    pub v: f64,
-    /// u u.
-    pub uu: f64,
-    /// u v.
-    pub uv: f64,
-    /// v v.
-    pub vv: f64,
-}
-
-impl VarianceSums {
-    /// Adds `n` pixels of one row, columns `u, u + 1, ..`, whose variances are those of the parabola through the values
-    /// at the first pixel, half way, and at the last.
-    #[inline]
-    pub fn add_run(&mut self, u: f64, v: f64, n: f64, [first, middle, last]: [f64; 3]) {
-        let half = (n - 1.0) / 2.0;
-        // Variance = middle + tilt h + bend h^2 with h counted from half way; sums over h^2 and h^4.
-        let scale = if half > 0.0 { half.recip() } else { 0.0 };
-        let tilt = (last - first) / 2.0 * scale;
-        let bend = ((first + last) / 2.0 - middle) * scale * scale;
-        let squares = n * (n * n - 1.0) / 12.0;
-        let fourths = squares * (3.0 * n * n - 7.0) / 20.0;
-        let sum = middle * n + bend * squares;
-        let sum_h = tilt * squares;
-        let sum_hh = middle * squares + bend * fourths;
-        let u = u + half;
-        let sum_u = u * sum + sum_h;
-        self.n += sum;
-        self.u += sum_u;
-        self.v += v * sum;
-        self.uu += u * (u * sum + 2.0 * sum_h) + sum_hh;
-        self.uv += v * sum_u;
-        self.vv += v * v * sum;
-    }
-}
-
 /// Lanes that sums are spread over, always the same, so that every processor rounds alike.
 const LANES: usize = 8;
 /// Values that are turned into q before they are summed.
@@ -270,6 +226,10 @@ const NUMBERS: [f64; BLOCK] = {
     }
     numbers
 };
+
+/// Nodes in standard deviations and weights of Gauss's rule for a uniform distribution.
+const GAUSS: [(f64, f64); 3] =
+    [(-1.341_640_786_499_874, 5.0 / 18.0), (0.0, 8.0 / 18.0), (1.341_640_786_499_874, 5.0 / 18.0)];
 
 /// `q = a u + b v + c`, least squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -309,11 +269,6 @@ impl AffineFit {
         self.abc[0] * u + self.abc[1] * v + self.abc[2]
     }
 
-    /// Mean (u, v) of the points.
-    pub fn mean(&self) -> [f64; 2] {
-        self.mean
-    }
-
     /// Variance of the residuals, with n - 3 degrees of freedom; 0 for three points, which leave no residual.
     pub fn variance(&self) -> f64 {
         if self.n > 3.0 { self.rms * self.rms * self.n / (self.n - 3.0) } else { 0.0 }
@@ -327,13 +282,29 @@ impl AffineFit {
         self.about_origin([[uu, uv, 0.0], [uv, vv, 0.0], [0.0, 0.0, variance / self.n]])
     }
 
-    /// Covariance of (a, b, c) by what is known of each point's error: `(A^T A)^-1 A^T S A (A^T A)^-1`, the sums being
-    /// those of the same points about [`AffineFit::mean`].
-    pub fn covariance_by(&self, variances: &VarianceSums) -> [[f64; 3]; 3] {
-        let VarianceSums { n, u, v, uu, uv, vv } = *variances;
-        let [[p, q], [_, r]] = self.inverse;
+    /// Covariance of (a, b, c) by what is known of the points' errors, and the mean of their variances, which
+    /// `variance` gives for a q: `(A^T A)^-1 A^T S A (A^T A)^-1`, A being the rows (u, v, 1) and S the variances.
+    ///
+    /// `A^T S A` is taken over the parallelogram that has the points' number, mean and second moments, by Gauss's rule
+    /// of three nodes each way: exact for a rectangle, near for others, and nothing has to be summed pixel by pixel.
+    pub fn covariance_by(&self, variance: impl Fn(f64) -> f64) -> ([[f64; 3]; 3], f64) {
+        let ([[p, q], [_, r]], [mean_u, mean_v]) = (self.inverse, self.mean);
+        // Second moments, and their Cholesky factor.
+        let scale = (self.n * (p * r - q * q)).recip();
+        let across = (r * scale).sqrt();
+        let skew = -q * scale / across;
+        let down = (p * scale - skew * skew).max(0.0).sqrt();
+        let mut sums = [[0.0; 3]; 3];
+        for (x, weight_x) in GAUSS {
+            for (y, weight_y) in GAUSS {
+                let (u, v) = (across * x, skew * x + down * y);
+                let share = self.n * weight_x * weight_y * variance(self.at(mean_u + u, mean_v + v));
+                let row = [u, v, 1.0];
+                sums = std::array::from_fn(|i| std::array::from_fn(|j| sums[i][j] + share * row[i] * row[j]));
+            }
+        }
         let inverse = [[p, q, 0.0], [q, r, 0.0], [0.0, 0.0, self.n.recip()]];
-        self.about_origin(propagate(&inverse, &[[uu, uv, u], [uv, vv, v], [u, v, n]]))
+        (self.about_origin(propagate(&inverse, &sums)), sums[2][2] / self.n)
     }
 
     /// Covariance of (a, b, c) from that of (a, b, value at the mean).
