@@ -38,15 +38,21 @@ pub fn parse(text: &str) -> Result<NoiseTable> {
     for (number, line) in (1..).zip(lines).filter(|(_, line)| !line.is_empty()) {
         match numbers(line) {
             Some(row) => rows.push(row),
-            None if rows.is_empty() && !line.contains(|c: char| c.is_ascii_digit()) => (), // the heading
+            None if rows.is_empty() && is_heading(line) => (),
             None => return Err(unreadable(format!("line {number} is `{line}`"))),
         }
     }
     Ok(NoiseTable::new(&rows)?)
 }
 
+const BETWEEN: [char; 3] = [',', ';', '\t'];
+
+fn is_heading(line: &str) -> bool {
+    line.contains(BETWEEN) && !line.contains(|c: char| c.is_ascii_digit())
+}
+
 fn numbers(line: &str) -> Option<[f64; 2]> {
-    let (range, sigma) = line.split_once([',', ';', '\t'])?;
+    let (range, sigma) = line.split_once(BETWEEN)?;
     Some([range.trim().parse().ok()?, sigma.trim().parse().ok()?])
 }
 

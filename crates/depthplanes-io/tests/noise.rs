@@ -27,6 +27,7 @@ fn what_is_no_table_is_refused_with_the_line() {
         ("", "0 rows"),
         ("range,sigma\n", "0 rows"),
         ("1,0.002\nfar,0.009\n", "line 2 is `far,0.009`"),
+        ("hello", "line 1 is `hello`"),
         ("1 0.002\n", "line 1"),
         ("1,0.002,7\n", "line 1"),
         ("a,b\nc,d\n1,x2\n", "line 3"),
