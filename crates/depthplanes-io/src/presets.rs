@@ -132,7 +132,7 @@ const KINECT2: PresetNoise = PresetNoise::Table(&[
 
 /// RealSense D400: 0.08 px of disparity, the maker's advice for a well calibrated camera before a textured wall
 /// (librealsense issue 3904). The baseline is that of a D435; that of a D415 is 0.055 m, of a D455 0.095 m. Most of
-/// this error is smooth over tens of pixels, and an estimate from a map sees but a third to a seventh of it.
+/// this error is smooth over tens of pixels, and an estimate from a map sees but a third to a fifth of it.
 const REALSENSE: PresetNoise = PresetNoise::Pair { sigma_px: 0.08, baseline_m: 0.05 };
 
 /// Rendered depth has no noise, but ICL-NUIM's frames come in steps of 1 mm and scatter by 0.29 mm beyond what that
