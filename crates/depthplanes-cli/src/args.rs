@@ -20,6 +20,7 @@ pub(crate) use flags::Reading;
 pub(crate) enum Command {
     Detect(Box<Detect>),
     Inspect { inputs: Vec<OsString>, reading: Box<Reading>, json: bool },
+    Noise { inputs: Vec<OsString>, reading: Box<Reading>, json: bool },
     Score(Score),
     Demo { out_dir: PathBuf },
     Methods,
@@ -38,6 +39,7 @@ pub(crate) struct Detect {
     pub(crate) method: &'static MethodInfo,
     /// Parameters given, by flag; also those that the method does not have.
     pub(crate) parameters: Vec<(&'static str, f64)>,
+    pub(crate) noise_table: Option<PathBuf>,
     pub(crate) outputs: Vec<(&'static Output, PathBuf)>,
     pub(crate) out_dir: Option<PathBuf>,
     pub(crate) legend: bool,
@@ -64,6 +66,11 @@ pub(crate) fn parse() -> Command {
     match name {
         "detect" => Command::Detect(Box::new(detect(matches))),
         "inspect" => Command::Inspect {
+            inputs: inputs(matches),
+            reading: Box::new(Reading::from_matches(matches)),
+            json: matches.get_flag("json"),
+        },
+        "noise" => Command::Noise {
             inputs: inputs(matches),
             reading: Box::new(Reading::from_matches(matches)),
             json: matches.get_flag("json"),
@@ -107,7 +114,7 @@ const EXIT_CODES: &str = "Exit codes:
   0    done
   1    something went wrong while processing or writing
   2    wrong use or wrong input: usage, an unreadable file, a parameter out of range;
-       `detect` and `inspect` do the good ones of many inputs all the same";
+       `detect`, `inspect` and `noise` do the good ones of many inputs all the same";
 
 fn program() -> clap::Command {
     clap::Command::new("depthplanes")
@@ -124,6 +131,7 @@ fn program() -> clap::Command {
         .subcommands([
             detect_command(),
             inspect_command(),
+            noise_command(),
             score_command(),
             demo_command(),
             clap::Command::new("methods").about("Lists the methods"),
@@ -148,6 +156,7 @@ fn detect_command() -> clap::Command {
         .args(flags::reading())
         .arg(method_arg("method").long("method").default_value(METHODS[0].name).help("How to look for planes"))
         .args(flags::method_parameters())
+        .arg(flags::noise_table())
         .args(output_flags())
         .args(running_flags())
 }
@@ -184,6 +193,15 @@ fn inspect_command() -> clap::Command {
         .arg(flags::inputs())
         .args(flags::reading())
         .arg(flags::switch("json", "Print a JSON line for each input"))
+}
+
+fn noise_command() -> clap::Command {
+    clap::Command::new("noise")
+        .about("Estimates how noisy a sensor is from maps of it, each and all together, and the flags for `detect`")
+        .after_help(EXIT_CODES)
+        .arg(flags::inputs())
+        .args(flags::reading())
+        .arg(flags::switch("json", "Print one JSON document"))
 }
 
 fn score_command() -> clap::Command {
@@ -231,6 +249,7 @@ fn detect(matches: &ArgMatches) -> Detect {
         reading: Reading::from_matches(matches),
         method: method(matches).expect("it has a default"),
         parameters: flags::parameters_given(matches),
+        noise_table: path(matches, "noise-table"),
         outputs: outputs.collect(),
         out_dir: path(matches, "out-dir"),
         legend: matches.get_flag("legend"),

@@ -64,7 +64,8 @@ pub(crate) fn frame(input: &Input, options: &ReadOptions) -> Outcome<Frame> {
         Input::Standard => Ok(depthplanes_io::decode(&standard_input()?, "-", options)?),
         Input::Scene(spec) => {
             let mut frame = scene(spec)?;
-            if *options != ReadOptions::default() {
+            frame.sensor.noise = options.noise;
+            if *options != (ReadOptions { noise: options.noise, ..ReadOptions::default() }) {
                 frame
                     .warnings
                     .push("a made-up scene knows its own unit and camera: flags on reading are not used".into());

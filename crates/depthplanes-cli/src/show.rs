@@ -175,12 +175,12 @@ fn direction(x: f64) -> String {
 }
 
 /// A length with the unit that suits it.
-fn length(metres: f64) -> String {
+pub(crate) fn length(metres: f64) -> String {
     if metres.abs() >= 1.0 { format!("{} m", significant(metres)) } else { format!("{} mm", significant(metres * 1e3)) }
 }
 
 /// About four significant digits, no trailing zeros, no `-0`.
-fn significant(value: f64) -> String {
+pub(crate) fn significant(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{}", value + 0.0);
     }

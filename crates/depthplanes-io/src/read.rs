@@ -6,10 +6,11 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use depthplanes::noise::{NoiseModel, SensorNoise};
 use depthplanes::{Intrinsics, Sensor};
 
 use crate::camera_file::CameraFile;
-use crate::encoding::{self, Given, Stereo};
+use crate::encoding::{self, Given, Meaning, Stereo};
 use crate::error::{Error, Result};
 use crate::formats::{self, DecodeOptions, Image};
 use crate::frame::{Frame, Pixels};
@@ -50,6 +51,8 @@ pub struct ReadOptions {
     pub camera_size: Option<(usize, usize)>,
     /// The stereo rig, for disparities; ignored for depth.
     pub stereo: Option<Stereo>,
+    /// How far off a pixel is.
+    pub noise: Option<SensorNoise>,
 }
 
 impl ReadOptions {
@@ -127,7 +130,7 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
         missing: missing.filter(|value| storable(&image.pixels, *value)),
         pixels: image.pixels,
         valid_range: options.valid_range.or(meaning.valid_range),
-        sensor: Sensor { measure: meaning.measure, intrinsics, noise: preset.and_then(|preset| preset.noise) },
+        sensor: Sensor { measure: meaning.measure, intrinsics, noise: noise(options, preset, &meaning, intrinsics)? },
         format: format.name,
         encoding: encoding.name,
         warnings: image.warnings,
@@ -168,6 +171,23 @@ fn swap_bytes(image: &mut Image) -> Result<()> {
         _ => return Err(Error::parameter("--swap-bytes", image.sample, "maps of 16-bit integers")),
     }
     Ok(())
+}
+
+/// The user's noise, which must suit the map, or the preset's.
+fn noise(
+    options: &ReadOptions,
+    preset: Option<&SensorPreset>,
+    meaning: &Meaning,
+    camera: Option<Intrinsics>,
+) -> Result<Option<SensorNoise>> {
+    let Some(noise) = options.noise else {
+        return Ok(preset.and_then(|preset| preset.noise?.of(camera.as_ref())));
+    };
+    if NoiseModel::new(meaning.measure, noise, 0.0).is_none() {
+        let accepted = "maps in depth, or in disparity of a known rig (--focal, --baseline)";
+        return Err(Error::parameter("--noise-table", "for depth and the map is not", accepted));
+    }
+    Ok(Some(noise))
 }
 
 /// The camera for this map: the user's, or the preset's if the size is right.

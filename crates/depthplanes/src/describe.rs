@@ -5,10 +5,11 @@
 //! distances from the fitted planes. Sums are taken in raster order, whatever the number of threads.
 
 use crate::camera::{Intrinsics, Measure, Sensor};
-use crate::detection::{MapFit, MetricPlane, PixelBox, Plane, share};
+use crate::detection::{CovarianceSource, MapFit, MetricPlane, PixelBox, Plane, share};
 use crate::fit::{self, AffineFit, Moments, RunSums};
 use crate::group::vectorised;
 use crate::map::{DepthView, Pixel};
+use crate::noise::{NoiseModel, Patch};
 use crate::select::LabelledRun;
 
 /// What the first pass knows of a plane.
@@ -43,6 +44,17 @@ struct Quantity {
 pub struct Describer {
     tallies: Vec<Tally>,
     distances: Vec<Distances>,
+}
+
+/// What the second pass has to know beside the pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    /// What the numbers mean, and the camera.
+    pub sensor: &'a Sensor,
+    /// The noise of the map, if it is known.
+    pub noise: Option<&'a NoiseModel>,
+    /// Valid pixels of the map.
+    pub valid_pixels: usize,
 }
 
 /// What the second pass sums for a plane.
@@ -114,15 +126,16 @@ impl Describer {
         self.tallies.retain(keep);
     }
 
-    /// Second pass: the records, in order of label. Shares are taken of the map's `valid_pixels`.
+    /// Second pass: the records, in order of label. Shares are taken of the map's `valid_pixels`, covariances from
+    /// the noise if it is known.
     pub fn describe<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
         runs: &[LabelledRun],
-        sensor: &Sensor,
-        valid_pixels: usize,
+        seen: &Seen<'_>,
         planes: &mut Vec<Plane>,
     ) {
+        let Seen { sensor, valid_pixels, .. } = *seen;
         planes.clear();
         planes.reserve(self.tallies.capacity());
         self.distances.clear();
@@ -138,7 +151,7 @@ impl Describer {
         planes.extend((1..).zip(&self.tallies).map(|(label, tally)| {
             let fit =
                 tally.fit.map(|fit| MapFit { gradient: [fit.abc[0], fit.abc[1]], offset: fit.abc[2], rms: fit.rms });
-            let metric = || self.distances.get(usize::from(label) - 1)?.metric(tally, &sensor.intrinsics?);
+            let metric = || self.distances.get(usize::from(label) - 1)?.metric(tally, seen);
             Plane {
                 label,
                 pixel_count: tally.pixel_count,
@@ -209,6 +222,29 @@ impl Tally {
     }
 }
 
+impl Tally {
+    /// Covariance of the coefficients in inverse depth by the noise; larger if the residuals are, by more than three
+    /// standard deviations of their chi-squared. `None` if the noise is 0.
+    fn covariance_by(&self, noise: &NoiseModel, sensor: &Sensor) -> Option<[[f64; 3]; 3]> {
+        // Noise is known in map units where these are affine in inverse depth.
+        let (fit, slope) = match sensor.measure {
+            Measure::Depth { .. } => (self.inverse_depth?, 1.0),
+            Measure::InverseDepth { slope, .. } => (self.fit?, slope),
+            Measure::Disparity => return None,
+        };
+        let PixelBox { u_min, v_min, u_max, v_max } = self.bounding_box;
+        let extent = [u_max - u_min + 1, v_max - v_min + 1].map(f64::from);
+        let patch = Patch { gradient: [fit.abc[0], fit.abc[1]], extent, pixels: fit.n };
+        let (covariance, expected) = fit.covariance_by(|q| noise.variance_in(&patch, q));
+        if expected <= 0.0 {
+            return None;
+        }
+        let ratio = fit.variance() / expected;
+        let excess = if ratio > 1.0 + 3.0 * (2.0 / fit.n).sqrt() { ratio } else { 1.0 };
+        Some(covariance.map(|row| row.map(|x| x * excess * slope * slope)))
+    }
+}
+
 impl Quantity {
     fn fit(&self, [u, v]: [f64; 2]) -> Option<AffineFit> {
         self.sums.fit().map(|fit| fit.moved([u, v, self.first]))
@@ -267,15 +303,21 @@ impl Distances {
 
     /// The metric plane: a point's distance from it is z |q - q of the plane| times the plane's
     /// distance from the camera, since n . P + d = d (1 - z m . r).
-    fn metric(&self, tally: &Tally, camera: &Intrinsics) -> Option<MetricPlane> {
+    fn metric(&self, tally: &Tally, seen: &Seen<'_>) -> Option<MetricPlane> {
+        let camera = &seen.sensor.intrinsics?;
         let fit = tally.inverse_depth.filter(|_| !self.behind_infinity)?;
         let plane = fit::hessian(&fit, camera)?;
         let n = tally.pixel_count as f64;
+        let (covariance, covariance_from) = match seen.noise.and_then(|noise| tally.covariance_by(noise, seen.sensor)) {
+            Some(covariance) => (covariance, CovarianceSource::Noise),
+            None => (fit.covariance(), CovarianceSource::Residuals),
+        };
         Some(MetricPlane {
             plane,
             rms_m: (self.squares / n).sqrt() * plane.distance,
             centroid_m: self.point.map(|sum| sum / n),
-            covariance: fit::metric_covariance(&fit, camera),
+            covariance: fit::metric_covariance(fit.abc, &covariance, camera),
+            covariance_from,
         })
     }
 }

@@ -100,7 +100,20 @@ pub struct MetricPlane {
     pub rms_m: f64,
     /// Mean of the points, metres.
     pub centroid_m: [f64; 3],
-    /// Covariance of (nx, ny, nz, distance), from the residuals of the fit; the normal's part has
-    /// rank 2, since a unit vector cannot change its length. Row by row.
+    /// Covariance of (nx, ny, nz, distance), row by row. The normal's part has rank 2, since a unit vector cannot
+    /// change its length.
     pub covariance: [[f64; 4]; 4],
+    /// What the covariance rests on.
+    pub covariance_from: CovarianceSource,
+}
+
+/// What a covariance was propagated from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CovarianceSource {
+    /// The noise of the sensor, stated or estimated, and the rounding of its values. If the residuals have a
+    /// significantly larger variance than that (three standard deviations of a chi-squared), the covariance is larger
+    /// by the same factor.
+    Noise,
+    /// The residuals of the fit, as independent errors: the noise of the sensor is not known.
+    Residuals,
 }

@@ -75,6 +75,24 @@ pub enum Error {
         /// What is accepted.
         accepted: &'static str,
     },
+    /// A table of a sensor's noise that is none.
+    NoiseTable {
+        /// The row at fault, from 1; 0 for their number.
+        row: usize,
+        /// The value given.
+        given: f64,
+        /// What is accepted.
+        accepted: &'static str,
+    },
+    /// Too little of a map is flat and valid to tell the noise from.
+    TooFewBlocks {
+        /// Blocks of valid pixels found.
+        found: usize,
+        /// Fewest that are accepted.
+        least: usize,
+    },
+    /// Maps of different measures where one noise is wanted of all.
+    MixedMeasures,
     /// More planes than 16-bit labels can name.
     TooManyPlanes {
         /// Planes found.
@@ -128,6 +146,22 @@ impl fmt::Display for Error {
             }
             Error::Camera { name, given, accepted } => {
                 write!(f, "the camera's {name} is {given}; accepted: {accepted}")
+            }
+            Error::NoiseTable { row: 0, given, accepted } => {
+                write!(f, "the table of the noise has {given} rows; accepted: {accepted}")
+            }
+            Error::NoiseTable { row, given, accepted } => {
+                write!(f, "row {row} of the table of the noise has {given}; accepted: {accepted}")
+            }
+            Error::TooFewBlocks { found, least } => write!(
+                f,
+                "the noise cannot be told from {found} blocks of 12 x 12 pixels, four fifths of them valid; at least {least} are needed"
+            ),
+            Error::MixedMeasures => {
+                write!(
+                    f,
+                    "the maps' numbers mean different things; one noise needs depth throughout, or disparity of one rig"
+                )
             }
             Error::TooManyPlanes { found } => write!(
                 f,

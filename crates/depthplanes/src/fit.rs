@@ -227,6 +227,10 @@ const NUMBERS: [f64; BLOCK] = {
     numbers
 };
 
+/// Nodes in standard deviations and weights of Gauss's rule for a uniform distribution.
+const GAUSS: [(f64, f64); 3] =
+    [(-1.341_640_786_499_874, 5.0 / 18.0), (0.0, 8.0 / 18.0), (1.341_640_786_499_874, 5.0 / 18.0)];
+
 /// `q = a u + b v + c`, least squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AffineFit {
@@ -265,41 +269,103 @@ impl AffineFit {
         self.abc[0] * u + self.abc[1] * v + self.abc[2]
     }
 
-    /// Covariance of (a, b, c): the residual variance (n - 3 degrees of freedom) times the inverse
-    /// normal matrix. All 0 for three points, which leave no residual.
+    /// Variance of the residuals, with n - 3 degrees of freedom; 0 for three points, which leave no residual.
+    pub fn variance(&self) -> f64 {
+        if self.n > 3.0 { self.rms * self.rms * self.n / (self.n - 3.0) } else { 0.0 }
+    }
+
+    /// Covariance of (a, b, c) by the residuals: their variance times the inverse normal matrix, as if all points were
+    /// equally good.
     pub fn covariance(&self) -> [[f64; 3]; 3] {
-        let variance = if self.n > 3.0 { self.rms * self.rms * self.n / (self.n - 3.0) } else { 0.0 };
-        let ([[uu, uv], [_, vv]], [u, v]) = (self.inverse, self.mean);
-        let (cu, cv) = (-(uu * u + uv * v), -(uv * u + vv * v));
-        let cc = 1.0 / self.n - cu * u - cv * v;
-        [[uu, uv, cu], [uv, vv, cv], [cu, cv, cc]].map(|row| row.map(|x| x * variance))
+        let variance = self.variance();
+        let [[uu, uv], [_, vv]] = self.inverse.map(|row| row.map(|x| x * variance));
+        self.about_origin([[uu, uv, 0.0], [uv, vv, 0.0], [0.0, 0.0, variance / self.n]])
+    }
+
+    /// Covariance of (a, b, c) by what is known of the points' errors, and the mean of their variances, which
+    /// `variance` gives for a q: `(A^T A)^-1 A^T S A (A^T A)^-1`, A being the rows (u, v, 1) and S the variances.
+    ///
+    /// `A^T S A` is taken over the parallelogram that has the points' number, mean and second moments, by Gauss's rule
+    /// of three nodes each way: exact for a rectangle, near for others, and nothing has to be summed pixel by pixel.
+    pub fn covariance_by(&self, variance: impl Fn(f64) -> f64) -> ([[f64; 3]; 3], f64) {
+        let ([[p, q], [_, r]], [mean_u, mean_v]) = (self.inverse, self.mean);
+        // Second moments, and their Cholesky factor.
+        let scale = (self.n * (p * r - q * q)).recip();
+        let across = (r * scale).sqrt();
+        let skew = -q * scale / across;
+        let down = (p * scale - skew * skew).max(0.0).sqrt();
+        let mut sums = [[0.0; 3]; 3];
+        for (x, weight_x) in GAUSS {
+            for (y, weight_y) in GAUSS {
+                let (u, v) = (across * x, skew * x + down * y);
+                let share = self.n * weight_x * weight_y * variance(self.at(mean_u + u, mean_v + v));
+                let row = [u, v, 1.0];
+                sums = std::array::from_fn(|i| std::array::from_fn(|j| sums[i][j] + share * row[i] * row[j]));
+            }
+        }
+        let inverse = [[p, q, 0.0], [q, r, 0.0], [0.0, 0.0, self.n.recip()]];
+        (self.about_origin(propagate(&inverse, &sums)), sums[2][2] / self.n)
+    }
+
+    /// Covariance of (a, b, c) from that of (a, b, value at the mean).
+    fn about_origin(&self, covariance: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
+        let [u, v] = self.mean;
+        propagate(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-u, -v, 1.0]], &covariance)
     }
 }
 
-/// Covariance of (nx, ny, nz, distance) of the plane whose inverse depth is `fit` (1/m).
-///
-/// With m as in [`Hessian::from_inverse_depth`], m^ = m/|m|: dn = -(I - m^ m^T) dm / |m| and
-/// d(distance) = -m^ . dm / |m|^2; m is linear in (a, b, c). Of first order: it understates the scatter
-/// of small patches in strong noise.
-pub fn metric_covariance(fit: &AffineFit, camera: &Intrinsics) -> [[f64; 4]; 4] {
-    let m = ray_coefficients(fit.abc, camera);
-    let length = m.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let unit = m.map(|x| x / length);
-    // Rows: d(nx, ny, nz, distance) / dm.
-    let mut by_m = [[0.0; 3]; 4];
-    for i in 0..3 {
-        for j in 0..3 {
-            by_m[i][j] = (unit[i] * unit[j] - if i == j { 1.0 } else { 0.0 }) / length;
-        }
-        by_m[3][i] = -unit[i] / (length * length);
-    }
-    // dm / d(a, b, c) is [[fx, 0, 0], [0, fy, 0], [cx, cy, 1]].
-    let jacobian = by_m.map(|[x, y, z]| [x * camera.fx + z * camera.cx, y * camera.fy + z * camera.cy, z]);
-    let abc = fit.covariance();
+/// `J C J^T`, symmetric to the last bit.
+fn propagate<const N: usize>(jacobian: &[[f64; 3]; N], covariance: &[[f64; 3]; 3]) -> [[f64; N]; N] {
     let product = |i: usize, j: usize| -> f64 {
-        (0..3).map(|k| (0..3).map(|l| jacobian[i][k] * abc[k][l] * jacobian[j][l]).sum::<f64>()).sum()
+        (0..3).map(|k| (0..3).map(|l| jacobian[i][k] * covariance[k][l] * jacobian[j][l]).sum::<f64>()).sum()
     };
     std::array::from_fn(|i| std::array::from_fn(|j| if i <= j { product(i, j) } else { product(j, i) }))
+}
+
+/// Covariance of (nx, ny, nz, distance) of the plane whose inverse depth (1/m) has the coefficients `abc` with that
+/// covariance.
+///
+/// With m as in [`Hessian::from_inverse_depth`], which is linear in (a, b, c), an error of m of s |m| along m and of
+/// t |m| across it moves the normal `-m / |m|` by `-t + s t` and the distance `1 / |m|` by
+/// `(-s + s^2 - t . t / 2) / |m|`, to second order. The first order alone is not enough: a plane turns about its
+/// pixels, so that one combination of normal and distance has hardly any error of first order, and all
+/// of it is of second order where the normal is not known to a fraction of a degree.
+pub fn metric_covariance(abc: [f64; 3], covariance: &[[f64; 3]; 3], camera: &Intrinsics) -> [[f64; 4]; 4] {
+    let m = ray_coefficients(abc, camera);
+    let length = m.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let along = m.map(|x| x / length);
+    let [first, second] = across(along);
+    // dm / d(a, b, c) is [[fx, 0, 0], [0, fy, 0], [cx, cy, 1]]; this is d(t, t, s) / d(a, b, c).
+    let by_abc = [first, second, along].map(|[x, y, z]| {
+        [x * camera.fx + z * camera.cx, y * camera.fy + z * camera.cy, z].map(|derivative| derivative / length)
+    });
+    let sigma = propagate(&by_abc, covariance);
+    // The second order as quadratic forms of (t, t, s), and their second moments (Isserlis' theorem).
+    let forms = [
+        [[0.0, 0.0, 0.5], [0.0, 0.0, 0.0], [0.5, 0.0, 0.0]],
+        [[0.0, 0.0, 0.0], [0.0, 0.0, 0.5], [0.0, 0.5, 0.0]],
+        [[-0.5, 0.0, 0.0], [0.0, -0.5, 0.0], [0.0, 0.0, 1.0]],
+    ];
+    let moved = forms.map(|form| multiply(&form, &sigma));
+    let trace = |x: &[[f64; 3]; 3]| x[0][0] + x[1][1] + x[2][2];
+    let both = |i: usize, j: usize| {
+        sigma[i][j] + trace(&moved[i]) * trace(&moved[j]) + 2.0 * trace(&multiply(&moved[i], &moved[j]))
+    };
+    let errors = std::array::from_fn(|i| std::array::from_fn(|j| both(i, j)));
+    let axes = |k: usize| [first[k], second[k], 0.0];
+    propagate(&[axes(0), axes(1), axes(2), [0.0, 0.0, length.recip()]], &errors)
+}
+
+/// Two unit vectors across a unit vector and across each other.
+fn across([x, y, z]: [f64; 3]) -> [[f64; 3]; 2] {
+    // Duff et al., Building an Orthonormal Basis, Revisited, JCGT 2017.
+    let sign = 1.0f64.copysign(z);
+    let (a, b) = (-1.0 / (sign + z), x * y * (-1.0 / (sign + z)));
+    [[1.0 + sign * x * x * a, sign * b, -sign * x], [b, sign + y * y * a, -y]]
+}
+
+fn multiply(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
 }
 
 /// The metric plane of an inverse-depth fit (1/m).

@@ -22,7 +22,7 @@ pub mod scene;
 pub mod select;
 
 pub use camera::{Hessian, Intrinsics, Measure, Sensor};
-pub use detection::{Detection, Plane};
+pub use detection::{CovarianceSource, Detection, Plane};
 pub use detector::Detector;
 pub use error::{Error, Result};
 pub use map::{AnyView, DepthView, Pixel};

@@ -1,8 +1,18 @@
 //! What a sensor's error is at a given range.
 //!
-//! In: what is known of the sensor ([`SensorNoise`]) and the steps that its values come in. Out: the standard deviation of one pixel in the space where planes
-//! are affine ([`Space`]): inverse depth for depth maps, the value itself for all others. Structured
-//! light and stereo err by a constant there, time of flight by a constant in depth; both parts add.
+//! In: what is known of the sensor ([`SensorNoise`]), what the map's numbers mean, and the steps that they come in.
+//! Out: a [`NoiseModel`]: the variance of one pixel in the space where planes are affine ([`Space`]), inverse depth
+//! for depth maps, the value itself for all others. Structured light and stereo err by a constant there, time of
+//! flight by a constant in depth; both parts add. [`Estimator`] finds it out from frames.
+
+mod estimate;
+mod steps;
+mod table;
+
+pub(crate) use estimate::{Blocks, VALID};
+pub use estimate::{Estimate, Estimator};
+pub(crate) use steps::Steps;
+pub use table::{MAX_ROWS, NoiseTable};
 
 use crate::camera::Measure;
 
@@ -35,10 +45,21 @@ impl Space {
             Space::Value => value,
         }
     }
+
+    /// What a difference of one map unit is in q, at q: |dq / dvalue|.
+    #[inline]
+    pub fn unit(self, q: f64) -> f64 {
+        match self {
+            Space::InverseDepth { metres } => metres * q * q,
+            Space::Value => 1.0,
+        }
+    }
 }
 
-/// What a sensor's maker or a calibration says of its error: the standard deviation of one pixel.
+/// What a sensor's maker or a calibration says of its error: the standard deviation of one pixel. Rounding to the
+/// map's steps comes on top.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a handful exist at a time, and being `Copy` keeps a `Sensor` plain")]
 pub enum SensorNoise {
     /// Of depth z: `base + growth z^2`, metres.
     Depth {
@@ -52,20 +73,34 @@ pub enum SensorNoise {
         /// Map units.
         sigma: f64,
     },
+    /// Of depth, by a table over the range.
+    Table(NoiseTable),
 }
 
-/// Standard deviation of one pixel's q: `constant + square q^2`, never below what rounding alone makes.
-///
-/// An error of depth of `s(z) = base + growth z^2` metres is `s / z^2 = growth + base q^2` in inverse
-/// depth: `constant` is the growth with the range, `square` the error at range 0.
+impl SensorNoise {
+    /// Standard deviation of depth at range `depth_m`, metres; `None` for [`SensorNoise::Value`], which takes a
+    /// measure to become one ([`NoiseModel::depth_sigma_m`]).
+    pub fn depth_sigma_m(&self, depth_m: f64) -> Option<f64> {
+        match self {
+            SensorNoise::Depth { base, growth } => Some(base + growth * depth_m * depth_m),
+            SensorNoise::Table(table) => Some(table.sigma_m(depth_m)),
+            SensorNoise::Value { .. } => None,
+        }
+    }
+}
+
+/// Variance of one pixel's q: the sensor's own error and the rounding of its values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseModel {
-    /// Part that does not depend on q, units of q.
-    pub constant: f64,
-    /// Part that grows with q squared, 1 / units of q; 0 in [`Space::Value`].
-    pub square: f64,
-    /// Rounding of whole map units, same form.
-    rounding: [f64; 2],
+    noise: SensorNoise,
+    space: Space,
+    /// Inverse depth, 1/m, is `slope q + offset`.
+    slope: f64,
+    offset: f64,
+    /// Steps of the values, map units.
+    step: f64,
+    /// Whether the noise holds what rounding does on average.
+    is_scatter: bool,
 }
 
 /// What rounding to steps may do, in steps, to all pixels of a small patch at once: on a slow ramp they lie on one
@@ -73,32 +108,141 @@ pub struct NoiseModel {
 const ROUNDING: f64 = 0.5;
 
 impl NoiseModel {
-    /// The model of a sensor whose error is known; `None` if it is stated for another kind of map.
-    pub fn of_sensor(space: Space, noise: SensorNoise, step: f64) -> Option<Self> {
-        match (space, noise) {
-            (Space::InverseDepth { .. }, SensorNoise::Depth { base, growth }) => {
-                Some(Self::new(space, growth, base, step))
-            }
-            (Space::Value, SensorNoise::Value { sigma }) => Some(Self::new(space, sigma, 0.0, step)),
-            _ => None,
+    /// The model of a map whose numbers mean `measure` and come in steps of `step` map units (0 for values that are not
+    /// rounded). `None` if the noise is stated for another kind of map: of disparity for depth, or of depth for
+    /// disparity of an unknown rig.
+    pub fn new(measure: Measure, noise: SensorNoise, step: f64) -> Option<Self> {
+        let (slope, offset) = match (measure, noise) {
+            (Measure::Depth { .. }, SensorNoise::Value { .. }) => return None,
+            (Measure::Depth { .. }, _) => (1.0, 0.0),
+            (Measure::InverseDepth { slope, offset }, _) => (slope, offset),
+            (Measure::Disparity, SensorNoise::Value { .. }) => (f64::NAN, f64::NAN),
+            (Measure::Disparity, _) => return None,
+        };
+        Some(NoiseModel { noise, space: Space::of(measure), slope, offset, step, is_scatter: false })
+    }
+
+    /// The same, its noise being the scatter that a map shows, with what rounding does on average.
+    pub(crate) fn of_scatter(self) -> Self {
+        NoiseModel { is_scatter: true, ..self }
+    }
+
+    /// Variance of one pixel's q, rounding taken at its worst.
+    #[inline]
+    pub fn variance(&self, q: f64) -> f64 {
+        let rounding = ROUNDING * self.step * self.space.unit(q);
+        let single = 2e-7 * q; // single precision, in which q is kept
+        let sensor = self.sensor_sigma(q);
+        sensor * sensor + rounding * rounding + single * single
+    }
+
+    /// [`NoiseModel::variance`] of many.
+    #[inline(always)]
+    pub(crate) fn variances(&self, q: &[f32], variances: &mut [f32]) {
+        let NoiseModel { slope, offset, .. } = *self;
+        let (unit, unit_by_square) = match self.space {
+            Space::InverseDepth { metres } => (0.0, metres),
+            Space::Value => (1.0, 0.0),
+        };
+        let each = q.iter().zip(variances);
+        let with = |q: f64, sensor: f64| {
+            let rounding = ROUNDING * self.step * (unit + unit_by_square * q * q);
+            let single = 2e-7 * q;
+            (sensor * sensor + rounding * rounding + single * single) as f32
+        };
+        match self.noise {
+            SensorNoise::Value { sigma } => each.for_each(|(&q, variance)| *variance = with(q.into(), sigma)),
+            SensorNoise::Depth { base, growth } => each.for_each(|(&q, variance)| {
+                let p = (slope * f64::from(q) + offset).max(0.0);
+                *variance = with(q.into(), (growth + base * p * p) / slope.abs());
+            }),
+            SensorNoise::Table(_) => each.for_each(|(&q, variance)| *variance = self.variance(q.into()) as f32),
         }
     }
 
-    /// A model of a map whose values come in steps of so many map units; 0 for values that are not rounded.
-    pub fn new(space: Space, constant: f64, square: f64, step: f64) -> Self {
-        let rounding = match space {
-            Space::InverseDepth { metres } => [0.0, ROUNDING * step * metres],
-            Space::Value => [ROUNDING * step, 0.0],
-        };
-        NoiseModel { constant, square, rounding }
+    /// Standard deviation of q by the noise as stated, rounding left out.
+    ///
+    /// An error of depth of `s` metres is `s p^2` in inverse depth p, and that over the slope in units of q.
+    #[inline]
+    pub fn sensor_sigma(&self, q: f64) -> f64 {
+        let inverse_depth = || (self.slope * q + self.offset).max(0.0);
+        match &self.noise {
+            SensorNoise::Value { sigma } => *sigma,
+            SensorNoise::Depth { base, growth } => {
+                let p = inverse_depth();
+                (growth + base * p * p) / self.slope.abs()
+            }
+            SensorNoise::Table(table) => {
+                let p = inverse_depth();
+                table.sigma_m(p.recip()) * p * p / self.slope.abs()
+            }
+        }
     }
 
-    /// Variance of one pixel's q.
-    #[inline(always)]
-    pub fn variance(&self, q: f64) -> f64 {
-        let sensor = self.constant + self.square * q * q;
-        let rounding = self.rounding[0] + self.rounding[1] * q * q;
-        let single = 2e-7 * q; // single precision, in which q is kept
-        sensor * sensor + rounding * rounding + single * single
+    /// Standard deviation of depth at range `depth_m` by the sensor's own error, metres; `None` for disparity of an
+    /// unknown rig.
+    pub fn depth_sigma_m(&self, depth_m: f64) -> Option<f64> {
+        let sigma = self.sensor_sigma((depth_m.recip() - self.offset) / self.slope);
+        let sigma_m = sigma * self.slope.abs() * depth_m * depth_m;
+        sigma_m.is_finite().then_some(sigma_m)
+    }
+
+    /// The variance that a pixel near q brings into the fit of a patch: that of the sensor, and that of rounding, which
+    /// counts more where pixels share its error.
+    ///
+    /// Rounding to steps D has the variance D^2 / 12. Of it the part `exp(-(2 pi sigma / D)^2)` follows the
+    /// signal, the rest is as good as white, since the sensor's noise sigma dithers it (Widrow and Kollar,
+    /// *Quantization Noise*, 2008: the first harmonic of the error's mean). The patch says how many pixels share
+    /// the part that follows the signal.
+    #[inline]
+    pub fn variance_in(&self, patch: &Patch, q: f64) -> f64 {
+        let (sigma, step) = (self.sensor_sigma(q), self.step * self.space.unit(q));
+        if step == 0.0 {
+            return sigma * sigma;
+        }
+        let white = step * step / 12.0;
+        let sensor = if self.is_scatter { (sigma * sigma - white).max(0.0) } else { sigma * sigma };
+        let dither = std::f64::consts::TAU * sensor.sqrt() / step;
+        if dither > 4.0 {
+            return sensor + white; // one part in ten million follows the signal
+        }
+        let alike = patch.alike(step);
+        if alike == 1.0 {
+            return sensor + white;
+        }
+        sensor + white * (1.0 + (-dither * dither).exp() * (alike - 1.0))
+    }
+}
+
+/// Pixels that one plane is fitted to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Patch {
+    /// What q changes by per column and per row.
+    pub gradient: [f64; 2],
+    /// Columns and rows of the box around them.
+    pub extent: [f64; 2],
+    /// How many they are.
+    pub pixels: f64,
+}
+
+impl Patch {
+    /// How many pixels count as one, since they share the error of rounding to steps: 1 if all err independently, all if
+    /// they lie on one level.
+    ///
+    /// Along an axis the error is a sawtooth of period P = step / gradient. A line of L pixels sums to its amplitude
+    /// times P / pi (the first harmonic, over the last period that is cut off), at most times L; to that of L
+    /// independent draws if the period is below two pixels. Lines within a period of each other sum alike, others
+    /// independently, as the border of a patch is ragged. Both axes bound the sum of the whole (our derivation).
+    #[inline]
+    fn alike(&self, step: f64) -> f64 {
+        let period = self.gradient.map(|gradient| step / gradient.abs());
+        let [columns, rows] = self.extent;
+        let line = |period: f64, length: f64| {
+            if period < 2.0 { length } else { (period / std::f64::consts::PI).min(length).powi(2) }
+        };
+        let lines = |period: f64, length: f64| period.clamp(1.0, length);
+        let along_rows = line(period[0], columns) * lines(period[1], rows) / columns;
+        let along_columns = line(period[1], rows) * lines(period[0], columns) / rows;
+        along_rows.min(along_columns).clamp(1.0, self.pixels)
     }
 }

@@ -337,8 +337,10 @@ fn metric_covariances_match_finite_differences() {
             (moved(1.0) - moved(-1.0)) / (2.0 * step)
         };
         let jacobian = SMatrix::<f64, 4, 3>::from_columns(&[derivative(0), derivative(1), derivative(2)]);
-        let expected = jacobian * Matrix3::from_fn(|i, j| abc[i][j]) * jacobian.transpose();
-        let given = metric_covariance(&fit, &camera);
+        // So little that the second order does not count.
+        let little = abc.map(|row| row.map(|x| 1e-8 * x));
+        let expected = jacobian * Matrix3::from_fn(|i, j| little[i][j]) * jacobian.transpose();
+        let given = metric_covariance(fit.abc, &little, &camera);
         for (i, j) in (0..16).map(|k| (k / 4, k % 4)) {
             let tolerance = 1e-5 * expected.trace();
             assert_near(given[i][j], expected[(i, j)], tolerance, &format!("case {case} [{i}][{j}]"));
@@ -351,16 +353,14 @@ fn metric_covariances_match_finite_differences() {
 fn metric_covariances_predict_the_scatter_of_fits() {
     let mut random = Random(31);
     let draws = 2000;
-    // The formula is of first order; with noise of 1e-3 1/m over a patch this small, terms of second
-    // order would add a fifth or so.
-    for (noise, tolerance) in [(1e-5, 0.2), (1e-5, 0.2), (1e-4, 0.2), (1e-4, 0.2), (3e-4, 0.3), (3e-4, 0.3)] {
+    for noise in [1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2] {
         let camera = camera(&mut random);
         let truth = slanted_plane(&mut random, &camera);
         let mut sum = 0.0;
         for _ in 0..draws {
             let fit = noisy_fit(&mut random, &truth, &camera, noise);
             let error = vector(&hessian(&fit, &camera).unwrap()) - vector(&truth);
-            let covariance = metric_covariance(&fit, &camera);
+            let covariance = metric_covariance(fit.abc, &fit.covariance(), &camera);
             let covariance = Matrix4::from_fn(|i, j| covariance[i][j]);
             // A unit normal has two degrees of freedom, so the 4 x 4 matrix has rank 3.
             let values = covariance.symmetric_eigenvalues();
@@ -370,6 +370,7 @@ fn metric_covariances_predict_the_scatter_of_fits() {
             sum += error.dot(&(information * error));
         }
         let mean = sum / f64::from(draws);
-        assert!((mean - 3.0).abs() < tolerance, "normalised squared error {mean} instead of 3 at noise {noise}");
+        println!("normalised squared error {mean:.2} at noise {noise}");
+        assert!((mean - 3.0).abs() < 0.3, "normalised squared error {mean} instead of 3 at noise {noise}");
     }
 }

@@ -105,6 +105,14 @@ fn method_parameter(name: &'static str) -> Arg {
     number(name, "NUMBER").long(flag_name(name)).help(help.join(" ")).help_heading("Method parameters")
 }
 
+/// The noise as a file, for methods that have the parameters for it.
+pub(super) fn noise_table() -> Arg {
+    path("noise-table", "FILE")
+        .help("The noise of depth as CSV, by increasing range: lines of range,standard deviation in metres")
+        .help_heading("Method parameters")
+        .conflicts_with_all(["noise", "noise-growth"])
+}
+
 /// The parameters given on the command line, whichever method has them.
 pub(super) fn parameters_given(matches: &ArgMatches) -> Vec<(&'static str, f64)> {
     let given = |name: &'static str| Some((name, *matches.get_one::<f64>(name)?));

@@ -6,8 +6,9 @@ use crate::failure::{Failure, Outcome, note};
 use crate::inputs::{self, Input};
 use crate::run::{Recipe, Runner};
 use crate::{load, pool, show};
-use depthplanes_io::ReadOptions;
+use depthplanes::noise::SensorNoise;
 use depthplanes_io::outputs::{self, OUTPUTS, Output, Report};
+use depthplanes_io::{ReadOptions, read_noise_table};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -16,7 +17,9 @@ pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     let recipe = Recipe::new(wanted.method, &wanted.parameters, wanted.threads)?;
     let inputs = inputs::expand(&wanted.inputs)?;
     check_outputs(wanted, &inputs)?;
-    let plan = Plan { wanted, recipe: &recipe, options: load::options(&wanted.reading)?, alone: inputs.len() == 1 };
+    let mut options = load::options(&wanted.reading)?;
+    options.noise = wanted.noise_table.as_ref().map(read_noise_table).transpose()?.map(SensorNoise::Table);
+    let plan = Plan { wanted, recipe: &recipe, options, alone: inputs.len() == 1 };
     let bar = progress(inputs.len());
     let mut tally = Tally::default();
     let work = || {
@@ -130,14 +133,15 @@ fn check_outputs(wanted: &Detect, inputs: &[Input]) -> Outcome {
     Ok(outputs::check_paths(&read_paths(wanted, inputs), &written)?)
 }
 
-/// The files that are read: inputs and camera.
+/// The files that are read: inputs, camera and noise.
 fn read_paths(wanted: &Detect, inputs: &[Input]) -> Vec<(PathBuf, String)> {
     let path = |input: &Input| match input {
         Input::File(path) => Some((path.clone(), format!("the input {}", path.display()))),
         _ => None,
     };
     let camera = wanted.reading.camera.iter().map(|path| (path.clone(), "the camera file".to_string()));
-    inputs.iter().filter_map(path).chain(camera).collect()
+    let noise = wanted.noise_table.iter().map(|path| (path.clone(), "the table of the noise".to_string()));
+    inputs.iter().filter_map(path).chain(camera).chain(noise).collect()
 }
 
 /// A bar on the terminal for several inputs; otherwise one that is never seen.

@@ -6,6 +6,7 @@ mod detect;
 mod inspect;
 mod lists;
 mod man;
+mod noise;
 mod score;
 
 use crate::args::Command;
@@ -18,6 +19,7 @@ pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
     match command {
         Command::Detect(wanted) => detect::run(wanted, out),
         Command::Inspect { inputs, reading, json } => inspect::run(inputs, reading, *json, out),
+        Command::Noise { inputs, reading, json } => noise::run(inputs, reading, *json, out),
         Command::Score(wanted) => score::run(wanted, out),
         Command::Demo { out_dir } => demo::run(out_dir, out),
         Command::Methods => lists::methods(out),

@@ -2,7 +2,7 @@
 
 use super::{Report, Spread, Times};
 use depthplanes::methods::ParamKind;
-use depthplanes::{Intrinsics, Measure, Plane};
+use depthplanes::{CovarianceSource, Intrinsics, Measure, Plane};
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
@@ -81,6 +81,7 @@ struct MetricRecord {
     rms_m: f64,
     centroid_m: [f64; 3],
     covariance: [[f64; 4]; 4],
+    covariance_from: &'static str,
 }
 
 impl<'a> From<&Report<'a>> for FrameRecord<'a> {
@@ -166,6 +167,10 @@ impl From<&Plane> for PlaneRecord {
                 rms_m: metric.rms_m,
                 centroid_m: metric.centroid_m,
                 covariance: metric.covariance,
+                covariance_from: match metric.covariance_from {
+                    CovarianceSource::Noise => "noise",
+                    CovarianceSource::Residuals => "residuals",
+                },
             }),
         }
     }

@@ -57,6 +57,7 @@ fn plane(label: u16, labels: &[u16]) -> Plane {
         rms_m: 0.002,
         centroid_m: [0.1, -0.2, 3.0],
         covariance: [[0.25; 4]; 4],
+        covariance_from: depthplanes::CovarianceSource::Residuals,
     };
     Plane {
         label,

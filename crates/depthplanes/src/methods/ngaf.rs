@@ -7,12 +7,13 @@
 //! method that fits planes.
 
 use super::{Job, Method, MethodInfo, Param, ParamKind};
-use crate::describe::{Describer, Tally};
+use crate::describe::{Describer, Seen, Tally};
 use crate::detection::Detection;
 use crate::enhance::{self, Enhancer};
 use crate::error::{Error, Result};
 use crate::group::{Grouper, LinkRule};
 use crate::map::{AnyView, DepthView, Pixel};
+use crate::noise::NoiseModel;
 use crate::select::Selection;
 use crate::with_view;
 
@@ -205,7 +206,12 @@ impl Runner {
             runs = selection.runs(groups);
         }
         let valid = groups.valid_pixels();
-        describer.describe(&map, runs, &job.sensor, valid, &mut out.planes);
+        let noise = job
+            .sensor
+            .noise
+            .and_then(|noise| NoiseModel::new(job.sensor.measure, noise, if T::IS_INTEGER { 1.0 } else { 0.0 }));
+        let seen = Seen { sensor: &job.sensor, noise: noise.as_ref(), valid_pixels: valid };
+        describer.describe(&map, runs, &seen, &mut out.planes);
         job.done("fit");
         selection.paint(groups, &mut out.labels);
         (out.width, out.height) = (map.width(), map.height());

@@ -6,20 +6,12 @@
 use super::tiles::{LANES, LEVELS, SIDE};
 use crate::group::vectorised;
 use crate::map::{DepthView, Pixel, Validity};
-use crate::noise::Space;
+use crate::noise::{Space, Steps};
 
 /// Columns that are summed at a time.
 const COLUMNS: usize = LANES * SIDE;
 /// Rows of the coarsest cells.
 const ROWS: usize = SIDE << (LEVELS - 1);
-/// Values that are looked at, about, to find the steps they come in.
-const SAMPLE: usize = 1 << 15;
-
-/// Values that are passed over at a time where none of them occurs.
-const GROUP: usize = 32;
-/// Longest step that is told from longer ones, map units.
-const FAR: usize = 1023;
-
 /// A map in q; NaN where nothing was measured and beyond the map's edge.
 #[derive(Debug, Default)]
 pub(super) struct Field {
@@ -33,7 +25,7 @@ pub(super) struct Field {
     pub(super) valid_pixels: usize,
     /// Steps that the map's values come in, map units; 0 for values that are not rounded.
     pub(super) step: f64,
-    seen: Vec<bool>,
+    steps: Steps,
 }
 
 impl Field {
@@ -52,7 +44,7 @@ impl Field {
                 )
             })
             .sum();
-        self.step = if T::IS_INTEGER { self.value_step(map) } else { 0.0 };
+        self.step = self.steps.of(map);
     }
 
     fn prepare(&mut self, width: usize, height: usize) {
@@ -62,35 +54,6 @@ impl Field {
             self.q.clear();
             self.q.resize(self.stride * self.rows, f32::NAN);
         }
-    }
-
-    /// The lower quartile of the distances of neighbouring values that occur: scaled maps leave out many.
-    fn value_step<T: Pixel>(&mut self, map: &DepthView<'_, T>) -> f64 {
-        let seen = &mut self.seen;
-        seen.clear();
-        seen.resize(1 << (8 * size_of::<T>()).min(16), false);
-        let validity = map.validity();
-        for row in map.rows().step_by(map.area().div_ceil(SAMPLE)) {
-            row.iter().filter(|value| validity.holds(**value)).for_each(|&value| seen[value.into() as usize] = true);
-        }
-        let mut steps = [0u32; FAR + 1];
-        let mut last = None;
-        for (first, values) in (0..).step_by(GROUP).zip(seen.chunks(GROUP)) {
-            if values.contains(&true) {
-                for (value, _) in (first..).zip(values).filter(|(_, seen)| **seen) {
-                    if let Some(last) = last.replace(value) {
-                        steps[FAR.min(value - last)] += 1;
-                    }
-                }
-            }
-        }
-        let count: u32 = steps.iter().sum();
-        let mut smaller = 0;
-        let quartile = (1..=FAR).find(|&step| {
-            smaller += steps[step];
-            4 * smaller >= count
-        });
-        quartile.unwrap_or(1) as f64
     }
 }
 

@@ -16,7 +16,7 @@ mod tiles;
 
 use super::{Job, Method, MethodInfo, Param, ParamKind};
 use crate::camera::Sensor;
-use crate::describe::Describer;
+use crate::describe::{Describer, Seen};
 use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::group::{Grouper, LinkRule};
@@ -185,7 +185,8 @@ impl Runner {
         job.done("select");
         let runs = selection.runs(groups);
         describer.tally(&map, runs, 0, &job.sensor);
-        describer.describe(&map, runs, &job.sensor, field.valid_pixels, &mut out.planes);
+        let seen = Seen { sensor: &job.sensor, noise: Some(&noise), valid_pixels: field.valid_pixels };
+        describer.describe(&map, runs, &seen, &mut out.planes);
         job.done("fit");
         selection.paint(groups, &mut out.labels);
         (out.width, out.height) = (map.width(), map.height());
@@ -200,9 +201,10 @@ impl Runner {
         let space = Space::of(sensor.measure);
         field.fill(map, space);
         pyramid.sum(field);
-        let stated = params.noise(space).or(sensor.noise);
-        let noise = stated.and_then(|noise| NoiseModel::of_sensor(space, noise, field.step));
-        noise.unwrap_or_else(|| level.estimate(&pyramid.grids[LEVELS - 1], space, field.step))
+        let model = |noise| NoiseModel::new(sensor.measure, noise, field.step);
+        let stated = params.noise(space).or(sensor.noise).and_then(model);
+        let estimated = || Some(model(level.estimate(&pyramid.grids[LEVELS - 1], space))?.of_scatter());
+        stated.or_else(estimated).expect("an estimate is of the map's own kind")
     }
 
     /// Regions of cells on one plane.

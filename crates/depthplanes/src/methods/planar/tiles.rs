@@ -279,9 +279,7 @@ impl Pyramid {
                 for level in 0..LEVELS {
                     let (finer, coarser) = self.grids.split_at_mut(level);
                     let grid = &mut coarser[0];
-                    for (variance, &q) in grid.variance.iter_mut().zip(&grid.sums.c) {
-                        *variance = noise.variance(q.into()) as f32;
-                    }
+                    noise.variances(&grid.sums.c, &mut grid.variance);
                     grid.hold_against_noise(finer.last(), confidence as f32);
                 }
             },

@@ -1,0 +1,157 @@
+//! `depthplanes noise`: how noisy a sensor is, by frames of it.
+//!
+//! In: maps, as `detect` takes them. Out: the estimate for each and for all together, as a table or as JSON, and the
+//! flags that hand it to `detect`.
+
+use crate::args::Reading;
+use crate::failure::{Failure, Outcome};
+use crate::inputs::Input;
+use crate::show::{length, significant};
+use crate::table::{Align, aligned, row};
+use crate::{inputs, load};
+use depthplanes::Measure;
+use depthplanes::noise::{Estimate, Estimator, SensorNoise};
+use depthplanes_io::ReadOptions;
+use serde_json::{Value, json};
+use std::ffi::OsString;
+use std::io::Write;
+
+/// Ranges that the standard deviation is told at, metres.
+const RANGES_M: [f64; 4] = [1.0, 2.0, 3.0, 4.0];
+
+pub(super) fn run(words: &[OsString], reading: &Reading, as_json: bool, out: &mut dyn Write) -> Outcome {
+    let inputs = inputs::expand(words)?;
+    let options = load::options(reading)?;
+    let mut together = Estimator::default();
+    let mut found = Vec::new();
+    for input in &inputs {
+        match look(input, &options, &mut together).map_err(|failure| failure.of_input(&input.name())) {
+            Ok(estimate) => found.push((input.name(), estimate)),
+            Err(failure) if inputs.len() == 1 => return Err(failure),
+            Err(failure) => failure.report(),
+        }
+    }
+    let all = together.estimate()?;
+    let text = if as_json { record(&found, &all) } else { readable(&found, &all) };
+    out.write_all(text.as_bytes())?;
+    out.flush()?;
+    match inputs.len() - found.len() {
+        0 => Ok(()),
+        failed => Err(Failure::request(format!("{failed} of {} inputs have no estimate", inputs.len()))),
+    }
+}
+
+/// One input's own estimate; its blocks go to those of all as well.
+fn look(input: &Input, options: &ReadOptions, together: &mut Estimator) -> Outcome<Estimate> {
+    let frame = load::frame(input, options)?;
+    let mut alone = Estimator::default();
+    alone.add(frame.view()?, frame.sensor.measure)?;
+    let estimate = alone.estimate()?;
+    together.add(frame.view()?, frame.sensor.measure)?;
+    Ok(estimate)
+}
+
+fn record(found: &[(String, Estimate)], all: &Estimate) -> String {
+    let frame = |(name, estimate): &(String, Estimate)| {
+        let mut record = estimate_record(estimate);
+        record["source"] = json!(name);
+        record
+    };
+    let mut together = estimate_record(all);
+    together["flags"] = json!(flags(all));
+    let record = json!({
+        "schema": "depthplanes.noise/1",
+        "frames": found.iter().map(frame).collect::<Vec<_>>(),
+        "all": together,
+    });
+    format!("{record:#}\n")
+}
+
+fn estimate_record(estimate: &Estimate) -> Value {
+    let model = estimate.model();
+    let at = |z: f64| json!({"range_m": z, "sigma_m": model.depth_sigma_m(z)});
+    let mut record = json!({
+        "space": space(estimate.measure),
+        "blocks": estimate.blocks,
+        "range": estimate.range,
+        "step": estimate.step,
+        "depth": RANGES_M.map(at),
+    });
+    match estimate.noise {
+        SensorNoise::Depth { base, growth } => {
+            record["base_m"] = json!(base);
+            record["growth_per_m"] = json!(growth);
+        }
+        SensorNoise::Value { sigma } => record["sigma"] = json!(sigma),
+        SensorNoise::Table(_) => (),
+    }
+    record
+}
+
+fn space(measure: Measure) -> &'static str {
+    if matches!(measure, Measure::Depth { .. }) { "inverse_depth" } else { "value" }
+}
+
+fn readable(found: &[(String, Estimate)], all: &Estimate) -> String {
+    let mut rows = vec![row(["input", "blocks", "range", "noise", "at 1 m", "at 2 m", "at 3 m", "at 4 m"])];
+    rows.extend(found.iter().map(|(name, estimate)| cells(name, estimate)));
+    if found.len() > 1 {
+        rows.push(cells("all together", all));
+    }
+    let mut columns = vec![Align::Right; rows[0].len()];
+    columns[0] = Align::Left;
+    let what = match all.measure {
+        Measure::Depth { .. } => "depth, found in inverse depth; z is the range in metres",
+        Measure::InverseDepth { .. } => "the map's values, and of depth",
+        Measure::Disparity => "the map's values; --focal and --baseline tell what it is in depth",
+    };
+    let steps = match (all.step, all.measure) {
+        (0.0, _) => String::new(),
+        (step, Measure::Depth { metres }) => format!(" Rounding to steps of {} comes on top.", length(step * metres)),
+        (step, _) => format!(" Rounding to steps of {} map units comes on top.", significant(step)),
+    };
+    let mut text = aligned(&columns, &rows);
+    text += &format!("\nStandard deviation of {what}.{steps}\n");
+    text += &match flags(all) {
+        Some(flags) => format!("To use it: depthplanes detect --method planar {flags}\n"),
+        None => "There is no noise beside rounding, and nothing to tell `detect`.\n".to_string(),
+    };
+    text
+}
+
+fn cells(name: &str, estimate: &Estimate) -> Vec<String> {
+    let model = estimate.model();
+    let mut cells = row([name, &estimate.blocks.to_string(), &range(estimate), &formula(estimate.noise)]);
+    let sigma = |z: f64| model.depth_sigma_m(z).map_or("-".to_string(), |sigma| format!("{:.1} mm", 1e3 * sigma));
+    cells.extend(RANGES_M.map(sigma));
+    cells
+}
+
+/// What the blocks span: metres, or map units.
+fn range(estimate: &Estimate) -> String {
+    let [low, high] = estimate.range;
+    match estimate.measure {
+        Measure::Depth { .. } => format!("{:.1} to {:.1} m", high.recip(), low.recip()),
+        _ => format!("{} to {}", significant(low), significant(high)),
+    }
+}
+
+fn formula(noise: SensorNoise) -> String {
+    match noise {
+        SensorNoise::Depth { base, growth } => format!("{:.2} + {:.2} z^2 mm", 1e3 * base, 1e3 * growth),
+        SensorNoise::Value { sigma } => format!("{} units", significant(sigma)),
+        SensorNoise::Table(_) => "table".into(),
+    }
+}
+
+/// The flags of `detect` for this noise; `None` if it is 0, which would mean to estimate it.
+fn flags(estimate: &Estimate) -> Option<String> {
+    let flag = |name: &str, value: f64| format!("--{name} {}", significant(value));
+    match estimate.noise {
+        SensorNoise::Depth { base, growth } if base + growth > 1e-9 => {
+            Some([flag("noise", base), flag("noise-growth", growth)].join(" "))
+        }
+        SensorNoise::Value { sigma } if sigma > 1e-9 => Some(flag("noise", sigma)),
+        _ => None,
+    }
+}

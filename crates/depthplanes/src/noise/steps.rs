@@ -1,0 +1,65 @@
+//! The steps that a map's values come in.
+//!
+//! In: a map. Out: the distance of neighbouring values that occur, map units. Scaled maps leave out many values, and
+//! coarse sensors leave out more the further they look.
+
+use crate::map::{DepthView, Pixel};
+
+/// Values that are looked at, about.
+const SAMPLE: usize = 1 << 15;
+/// Values that are passed over at a time where none of them occurs.
+const GROUP: usize = 32;
+/// Longest step that is told from longer ones, map units.
+const FAR: usize = 1023;
+
+/// Finds steps; reuses its memory.
+#[derive(Debug, Default)]
+pub(crate) struct Steps {
+    seen: Vec<bool>,
+}
+
+impl Steps {
+    /// The lower quartile of the distances of neighbouring values that occur in rows spread over the map; 0 for
+    /// floating-point maps.
+    pub(crate) fn of<T: Pixel>(&mut self, map: &DepthView<'_, T>) -> f64 {
+        if !T::IS_INTEGER {
+            return 0.0;
+        }
+        self.look(map);
+        let steps = self.steps();
+        let count: u32 = steps.iter().sum();
+        let mut smaller = 0;
+        let quartile = (1..=FAR).find(|&step| {
+            smaller += steps[step];
+            4 * smaller >= count
+        });
+        quartile.unwrap_or(1) as f64
+    }
+
+    /// Marks the values that occur.
+    fn look<T: Pixel>(&mut self, map: &DepthView<'_, T>) {
+        let seen = &mut self.seen;
+        seen.clear();
+        seen.resize(1 << (8 * size_of::<T>()), false);
+        let validity = map.validity();
+        for row in map.rows().step_by(map.area().div_ceil(SAMPLE)) {
+            row.iter().filter(|value| validity.holds(**value)).for_each(|&value| seen[value.into() as usize] = true);
+        }
+    }
+
+    /// How often neighbouring values that occur are so far apart.
+    fn steps(&self) -> [u32; FAR + 1] {
+        let mut steps = [0; FAR + 1];
+        let mut last = None;
+        for (first, values) in (0..).step_by(GROUP).zip(self.seen.chunks(GROUP)) {
+            if values.contains(&true) {
+                for (value, _) in (first..).zip(values).filter(|(_, seen)| **seen) {
+                    if let Some(last) = last.replace(value) {
+                        steps[FAR.min(value - last)] += 1;
+                    }
+                }
+            }
+        }
+        steps
+    }
+}

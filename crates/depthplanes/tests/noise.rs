@@ -1,0 +1,170 @@
+//! Noise models against their formulas, and estimates against the noise of made-up scenes.
+
+use depthplanes::noise::{Estimate, Estimator, MAX_ROWS, NoiseModel, NoiseTable, Patch, SensorNoise};
+use depthplanes::scene::Spec;
+use depthplanes::{DepthView, Error, Measure};
+
+const METRES: Measure = Measure::Depth { metres: 1.0 };
+
+/// The noise that so many seeds of a scene show together.
+fn estimate(spec: &str, seeds: u64) -> Estimate {
+    let mut estimator = Estimator::default();
+    for seed in 1..=seeds {
+        let frame = format!("{spec},seed={seed}").parse::<Spec>().unwrap().frame().unwrap();
+        estimator.add(frame.view(), frame.sensor.measure).unwrap();
+    }
+    estimator.estimate().unwrap()
+}
+
+#[test]
+fn estimates_are_within_a_fifth_of_the_generators_noise() {
+    // kinect: 0.072 px of disparity, steps included; tof: 1 mm + 1.3 mm (z / 1 m)^2.
+    let kinect = |z: f64| 0.0722 / (580.0 * 0.075) * z * z;
+    let tof = |z: f64| 0.001 + 0.0013 * z * z;
+    for scene in ["room", "random", "boxes", "planes3"] {
+        for (sensor, truth) in [("kinect", &kinect as &dyn Fn(f64) -> f64), ("tof", &tof)] {
+            for seeds in [1, 5] {
+                let model = estimate(&format!("{scene}:sensor={sensor}"), seeds).model();
+                let ratios = [1.0, 2.0, 3.0, 4.0].map(|z| model.depth_sigma_m(z).unwrap() / truth(z));
+                println!("{scene} {sensor}, {seeds} seeds: {ratios:.2?} of the truth at 1, 2, 3, 4 m");
+                for ratio in ratios {
+                    assert!((ratio - 1.0).abs() < 0.2, "{scene} {sensor}, {seeds} seeds: {ratios:?}");
+                }
+            }
+        }
+        for sensor in ["clean", "clean_mm"] {
+            let model = estimate(&format!("{scene}:sensor={sensor}"), 1).model();
+            let sigma_mm = [1.0, 2.0, 3.0, 4.0].map(|z| 1e3 * model.depth_sigma_m(z).unwrap());
+            println!("{scene} {sensor}: {sigma_mm:.3?} mm");
+            assert!(sigma_mm.iter().all(|&sigma| sigma < 0.3), "{scene} {sensor}: {sigma_mm:?}");
+        }
+    }
+}
+
+#[test]
+fn flat_and_slanted_maps_without_noise_have_none() {
+    let (width, height) = (96, 72);
+    let of = |pixels: Vec<f32>, measure| {
+        let mut estimator = Estimator::default();
+        estimator.add(DepthView::new(&pixels, width, height).unwrap(), measure).unwrap();
+        estimator.estimate().unwrap().noise
+    };
+    let none = SensorNoise::Depth { base: 0.0, growth: 0.0 };
+    assert_eq!(of(vec![2.0; width * height], METRES), none);
+    let slanted = |at: usize| 1.0 / (0.2 + 0.001 * (at % width) as f32 + 0.002 * (at / width) as f32);
+    let SensorNoise::Depth { base, growth } = of((0..width * height).map(slanted).collect(), METRES) else {
+        panic!("depth has a noise of depth")
+    };
+    assert!(base.max(growth) < 1e-6, "{base} {growth}");
+    assert_eq!(of(vec![20.0; width * height], Measure::Disparity), SensorNoise::Value { sigma: 0.0 });
+    let mut estimator = Estimator::default();
+    let whole: Vec<u16> = (0..width * height).map(|at| (900 + at % width / 20 + at / width / 9) as u16).collect();
+    estimator.add(DepthView::new(&whole, width, height).unwrap(), Measure::Disparity).unwrap();
+    let SensorNoise::Value { sigma } = estimator.estimate().unwrap().noise else { panic!("disparity has its own") };
+    assert!(sigma < 0.3, "rounding alone leaves {sigma} of a step");
+}
+
+#[test]
+fn too_little_to_estimate_from_is_an_error() {
+    let mut estimator = Estimator::default();
+    assert_eq!(estimator.estimate(), Err(Error::TooFewBlocks { found: 0, least: 8 }));
+    estimator.add(DepthView::new(&[0u16; 9600], 120, 80).unwrap(), METRES).unwrap();
+    assert_eq!(estimator.estimate(), Err(Error::TooFewBlocks { found: 0, least: 8 }));
+    estimator.add(DepthView::new(&[900u16; 11 * 800], 800, 11).unwrap(), METRES).unwrap();
+    assert_eq!(estimator.estimate(), Err(Error::TooFewBlocks { found: 0, least: 8 }));
+    estimator.add(DepthView::new(&[900u16; 12 * 84], 84, 12).unwrap(), METRES).unwrap();
+    assert_eq!(estimator.estimate(), Err(Error::TooFewBlocks { found: 7, least: 8 }));
+    let mixed = estimator.add(DepthView::new(&[9u8; 144], 12, 12).unwrap(), Measure::Disparity);
+    assert_eq!(mixed, Err(Error::MixedMeasures));
+    estimator.add(DepthView::new(&[9.0f32; 144], 12, 12).unwrap(), Measure::Depth { metres: 0.001 }).unwrap();
+    assert_eq!(estimator.estimate().unwrap().blocks, 8);
+}
+
+#[test]
+fn frames_in_which_a_third_is_missing_count_less_and_do_not_mislead() {
+    let frame = "room:sensor=tof".parse::<Spec>().unwrap().frame().unwrap();
+    let mut full = Estimator::default();
+    full.add(frame.view(), frame.sensor.measure).unwrap();
+    let depthplanes::scene::ScenePixels::U16(mut pixels) = frame.pixels.clone() else { panic!("16 bits") };
+    (0..pixels.len()).filter(|at| at % 640 / 24 % 3 == 0).for_each(|at| pixels[at] = 0);
+    let mut holed = Estimator::default();
+    holed.add(DepthView::new(&pixels, frame.width, frame.height).unwrap(), frame.sensor.measure).unwrap();
+    let (full, holed) = (full.estimate().unwrap(), holed.estimate().unwrap());
+    assert!(holed.blocks < full.blocks * 3 / 4);
+    let ratio = holed.model().depth_sigma_m(3.0).unwrap() / full.model().depth_sigma_m(3.0).unwrap();
+    assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
+}
+
+#[test]
+fn the_four_kinds_of_noise_are_the_same_in_depth_and_in_disparity() {
+    // 0.1 px of a rig of f T = 58 px m is 0.1 / 58 z^2 m, and 0.4 units of a quarter of a pixel.
+    let rig = Measure::stereo(0.25, 580.0, 0.1, 7.0).unwrap();
+    let (pixels, growth) = (SensorNoise::Value { sigma: 0.4 }, 0.1 / 58.0);
+    let depth = SensorNoise::Depth { base: 0.0, growth };
+    let rows: Vec<[f64; 2]> = (1..=16).map(|k| f64::from(k) * 0.5).map(|z| [z, growth * z * z]).collect();
+    let table = SensorNoise::Table(NoiseTable::new(&rows).unwrap());
+    for z in [0.5, 1.0, 2.5, 7.0, 8.0] {
+        let sigma = growth * z * z;
+        for (measure, noise) in [
+            (rig, pixels),
+            (rig, depth),
+            (rig, table),
+            (METRES, depth),
+            (METRES, table),
+            (Measure::Depth { metres: 0.001 }, table),
+        ] {
+            let model = NoiseModel::new(measure, noise, 0.0).unwrap();
+            let given = model.depth_sigma_m(z).unwrap();
+            assert!((given / sigma - 1.0).abs() < 1e-9, "{measure:?} {noise:?} at {z} m: {given} instead of {sigma}");
+        }
+        let q = rig.value(z).unwrap();
+        let model = NoiseModel::new(rig, depth, 0.0).unwrap();
+        assert!((model.sensor_sigma(q) / 0.4 - 1.0).abs() < 1e-9);
+        assert!((model.variance(q) / 0.16 - 1.0).abs() < 1e-6);
+    }
+    let with_base = NoiseModel::new(METRES, SensorNoise::Depth { base: 0.001, growth: 0.002 }, 0.0).unwrap();
+    assert!((with_base.depth_sigma_m(3.0).unwrap() - 0.019).abs() < 1e-12);
+    assert_eq!(NoiseModel::new(METRES, pixels, 0.0), None);
+    assert_eq!(NoiseModel::new(Measure::Disparity, depth, 0.0), None);
+    assert_eq!(NoiseModel::new(Measure::Disparity, table, 0.0), None);
+    let unknown = NoiseModel::new(Measure::Disparity, pixels, 1.0).unwrap();
+    assert_eq!((unknown.sensor_sigma(9.0), unknown.depth_sigma_m(1.0)), (0.4, None));
+}
+
+#[test]
+fn tables_hold_at_their_ends_and_refuse_what_is_none() {
+    let table = NoiseTable::new(&[[1.0, 0.002], [2.0, 0.004], [4.0, 0.020]]).unwrap();
+    let given = [0.0, 1.0, 1.5, 2.0, 3.0, 4.0, 90.0, f64::INFINITY].map(|z| table.sigma_m(z));
+    assert_eq!(given, [0.002, 0.002, 0.003, 0.004, 0.012, 0.020, 0.020, 0.020]);
+    assert_eq!(NoiseTable::new(&[[2.0, 0.5]]).unwrap().sigma_m(7.0), 0.5);
+    assert_eq!(table.rows().len(), 3);
+    let row_of = |rows: &[[f64; 2]]| match NoiseTable::new(rows) {
+        Err(Error::NoiseTable { row, .. }) => row,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(row_of(&[]), 0);
+    assert_eq!(row_of(&[[1.0, 0.1]; MAX_ROWS + 1]), 0);
+    assert_eq!(row_of(&[[0.0, 0.1]]), 1);
+    assert_eq!(row_of(&[[1.0, 0.1], [1.0, 0.2]]), 2);
+    assert_eq!(row_of(&[[1.0, 0.1], [f64::NAN, 0.2]]), 2);
+    assert_eq!(row_of(&[[1.0, 0.1], [2.0, -0.2]]), 2);
+    assert_eq!(row_of(&[[1.0, f64::INFINITY]]), 1);
+}
+
+#[test]
+fn rounding_counts_by_how_many_pixels_share_it() {
+    let model = |sigma: f64| NoiseModel::new(Measure::Disparity, SensorNoise::Value { sigma }, 1.0).unwrap();
+    let patch = |gradient| Patch { gradient, extent: [200.0, 100.0], pixels: 15_000.0 };
+    let twelfth = 1.0 / 12.0;
+    // A flat patch is off by one and the same error, whatever its size.
+    assert_eq!(model(0.0).variance_in(&patch([0.0, 0.0]), 9.0), twelfth * 15_000.0);
+    // A ramp along the rows, ten columns a level: all rows sum alike, each to a sawtooth's (10 / pi)^2.
+    let ramp = (10.0 / std::f64::consts::PI).powi(2) * 100.0 / 200.0;
+    assert!((model(0.0).variance_in(&patch([0.1, 0.0]), 9.0) - twelfth * ramp).abs() < 1e-9);
+    // A steep ramp along the columns alone leaves the columns alike.
+    assert!((model(0.0).variance_in(&patch([0.0, 3.0]), 9.0) - twelfth * 200.0).abs() < 1e-9);
+    // A steep ramp along both, or noise of half a step, leaves nothing to share.
+    assert_eq!(model(0.0).variance_in(&patch([3.0, -2.0]), 9.0), twelfth);
+    let dithered = model(0.5).variance_in(&patch([0.1, 0.1]), 9.0);
+    assert!((dithered / (0.25 + twelfth) - 1.0).abs() < 0.01, "{dithered}");
+}
