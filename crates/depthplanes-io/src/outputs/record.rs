@@ -80,6 +80,7 @@ struct MetricRecord {
     distance_m: f64,
     rms_m: f64,
     centroid_m: [f64; 3],
+    area_m2: Option<f64>,
     covariance: [[f64; 4]; 4],
 }
 
@@ -165,6 +166,7 @@ impl From<&Plane> for PlaneRecord {
                 distance_m: metric.plane.distance,
                 rms_m: metric.rms_m,
                 centroid_m: metric.centroid_m,
+                area_m2: metric.area_m2,
                 covariance: metric.covariance,
             }),
         }

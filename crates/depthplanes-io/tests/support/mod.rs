@@ -56,6 +56,7 @@ fn plane(label: u16, labels: &[u16]) -> Plane {
         plane: Hessian { normal: [0.0, 0.0, -1.0], distance: 3.0 },
         rms_m: 0.002,
         centroid_m: [0.1, -0.2, 3.0],
+        area_m2: Some(3.5),
         covariance: [[0.25; 4]; 4],
     };
     Plane {
