@@ -18,6 +18,7 @@ pub mod map;
 pub mod methods;
 pub mod metrics;
 pub mod noise;
+pub mod outline;
 pub mod scene;
 pub mod select;
 
