@@ -96,7 +96,7 @@ fn run_document(path: &Path) {
 #[test]
 fn the_commands_of_the_docs_print_what_the_docs_say() {
     let _alone = DOCUMENTS.lock();
-    for document in ["docs/cli.md", "docs/ngaf.md", "docs/planar.md", "README.md"] {
+    for document in ["docs/cli.md", "docs/ngaf.md", "docs/planar.md", "docs/outlines.md", "README.md"] {
         run_document(&root().join(document));
     }
 }
@@ -145,6 +145,8 @@ fn links_of_the_docs_lead_to_files() {
         "docs/ngaf.md",
         "docs/planar.md",
         "docs/metrics.md",
+        "docs/outlines.md",
+        "docs/planes-schema.md",
     ] {
         let path = root().join(document);
         let text = std::fs::read_to_string(&path).unwrap();

@@ -1,7 +1,9 @@
 //! The frame's record as it stands in JSON; docs/planes-schema.md describes each field.
 
+use super::outline::OutlineRecord;
 use super::{Report, Spread, Times};
 use depthplanes::methods::ParamKind;
+use depthplanes::outline::Outlines;
 use depthplanes::{Intrinsics, Measure, Plane};
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
@@ -27,6 +29,8 @@ pub(super) struct FrameRecord<'a> {
     labelled_pixels: usize,
     labelled_share: f64,
     warnings: &'a [String],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outline_tolerance_px: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     time_ms: Option<Map<String, Value>>,
     planes: Vec<PlaneRecord>,
@@ -57,6 +61,8 @@ struct PlaneRecord {
     centroid_px: [f64; 2],
     fit: Option<FitRecord>,
     metric: Option<MetricRecord>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outline: Option<OutlineRecord>,
 }
 
 #[derive(Serialize)]
@@ -104,8 +110,9 @@ impl<'a> From<&Report<'a>> for FrameRecord<'a> {
             labelled_pixels: detection.labelled_pixels(),
             labelled_share: detection.labelled_share(),
             warnings: &frame.warnings,
+            outline_tolerance_px: report.outlines.map(|outlines| outlines.tolerance_px()),
             time_ms: report.times.map(times),
-            planes: detection.planes.iter().map(PlaneRecord::from).collect(),
+            planes: detection.planes.iter().map(|plane| PlaneRecord::new(plane, report.outlines)).collect(),
         }
     }
 }
@@ -146,8 +153,8 @@ impl From<Intrinsics> for IntrinsicsRecord {
     }
 }
 
-impl From<&Plane> for PlaneRecord {
-    fn from(plane: &Plane) -> Self {
+impl PlaneRecord {
+    fn new(plane: &Plane, outlines: Option<&Outlines>) -> Self {
         let pixels = plane.bounding_box;
         PlaneRecord {
             label: plane.label,
@@ -169,6 +176,7 @@ impl From<&Plane> for PlaneRecord {
                 area_m2: metric.area_m2,
                 covariance: metric.covariance,
             }),
+            outline: outlines.and_then(|outlines| outlines.get(plane.label)).map(OutlineRecord::from),
         }
     }
 }

@@ -82,6 +82,7 @@ pub fn report<'a>(frame: &'a Frame, detection: &'a Detection) -> Report<'a> {
         method: depthplanes::methods::find("ngaf").unwrap(),
         parameters: &[1.5, 32.0, 0.0],
         detection,
+        outlines: None,
         times: None,
         legend: false,
     }

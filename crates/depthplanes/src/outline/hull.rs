@@ -27,9 +27,9 @@ impl Huller {
             let [first, last] = self.rows[row].get_or_insert([x, x]);
             (*first, *last) = (x.min(*first), x.max(*last));
         }
-        let rows = self.rows.iter().zip(top..=u16::MAX).filter_map(|(row, y)| Some((row.as_ref()?, y)));
-        chain(rows.clone().map(|(&[first, _], y)| [first, y]), hull);
-        chain(rows.rev().map(|(&[_, last], y)| [last, y]), hull);
+        let rows = self.rows.iter().enumerate().filter_map(|(row, ends)| Some((top + row as u16, (*ends)?)));
+        chain(rows.clone().map(|(y, [first, _])| [first, y]), hull);
+        chain(rows.rev().map(|(y, [_, last])| [last, y]), hull);
     }
 }
 

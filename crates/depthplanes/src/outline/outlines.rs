@@ -79,7 +79,7 @@ impl<'a> Outline<'a> {
     }
 
     /// The plane's parts, one for each of its 4-connected groups of pixels.
-    pub fn polygons(&self) -> impl Iterator<Item = Polygon<'a>> {
+    pub fn polygons(&self) -> impl Iterator<Item = Polygon<'a>> + use<'a> {
         let outline = *self;
         let rings = &outline.all.rings[outline.plane.rings.clone()];
         rings.chunk_by(|_, next| next.is_hole).map(move |rings| Polygon { outline, rings })
@@ -119,7 +119,7 @@ impl<'a> Polygon<'a> {
     }
 
     /// The holes, clockwise seen from the camera, in raster order of their first corners.
-    pub fn holes(&self) -> impl ExactSizeIterator<Item = Ring<'a>> {
+    pub fn holes(&self) -> impl ExactSizeIterator<Item = Ring<'a>> + use<'a> {
         let polygon = *self;
         self.rings[1..].iter().map(move |ring| polygon.ring(ring))
     }
