@@ -42,12 +42,12 @@ impl From<Outline<'_>> for OutlineRecord {
         OutlineRecord {
             polygons_px: outline.polygons().map(|polygon| polygon_of(&polygon, &points_px)).collect(),
             hull_px: points_px(&outline.hull()),
-            rectangle_px: rectangle(outline.rectangle_px(), &Point),
+            rectangle_px: rectangle(outline.rectangle_px()),
             polygons_m: outline
                 .is_metric()
                 .then(|| outline.polygons().map(|polygon| polygon_of(&polygon, &points_m)).collect()),
             hull_m: outline.is_metric().then(|| points_m(&outline.hull())),
-            rectangle_m: outline.rectangle_m().map(|found| rectangle(found, &micrometres)),
+            rectangle_m: outline.rectangle_m().map(rectangle),
         }
     }
 }
@@ -61,14 +61,14 @@ fn points_px(ring: &Ring<'_>) -> Points<2> {
 }
 
 fn points_m(ring: &Ring<'_>) -> Points<3> {
-    ring.points_m().into_iter().flatten().map(micrometres).collect()
+    ring.points_m().into_iter().flatten().map(rounded).collect()
 }
 
-fn rectangle<const N: usize>(found: Rectangle<N>, length: &dyn Fn([f64; N]) -> Point<N>) -> RectangleRecord<N> {
-    RectangleRecord { centre: length(found.centre), axes: found.axes.map(Point), sides: Point(found.sides) }
+fn rectangle<const N: usize>(found: Rectangle<N>) -> RectangleRecord<N> {
+    RectangleRecord { centre: rounded(found.centre), axes: found.axes.map(Point), sides: rounded(found.sides) }
 }
 
-/// Metres rounded to micrometres, which halves the text.
-fn micrometres<const N: usize>(point_m: [f64; N]) -> Point<N> {
-    Point(point_m.map(|x| (x * 1e6).round() / 1e6 + 0.0))
+/// Pixels or metres rounded to a millionth, which halves the text.
+fn rounded<const N: usize>(numbers: [f64; N]) -> Point<N> {
+    Point(numbers.map(|x| (x * 1e6).round() / 1e6 + 0.0))
 }
