@@ -26,9 +26,14 @@ pub(super) struct Chord {
 pub(super) struct Conflicts {
     /// Indices of the chords that have to be split.
     pub(super) found: Vec<usize>,
-    /// A corner of each ring, one that stays, by column.
-    witnesses: Vec<(Corner, u32)>,
+    /// For each band that a chord passes through: the band, the chord's first column, its index.
+    passages: Vec<(u16, u16, u32)>,
+    /// A corner of each ring, one that stays: its band, the corner, the number of its ring.
+    witnesses: Vec<(u16, Corner, u32)>,
 }
+
+/// Rows of a band: within one, chords are told apart by their columns.
+const BAND: u16 = 8;
 
 impl Chord {
     pub(super) fn new(ring: u32, ends: [usize; 2], cycle: &Cycle<'_>) -> Self {
@@ -82,58 +87,61 @@ fn is_ahead(from: Corner, p: Corner, q: Corner) -> bool {
 }
 
 impl Conflicts {
-    /// Fills `found`; sorts the chords, which come ring by ring.
+    /// Fills `found`. The chords come ring by ring.
     pub(super) fn find(&mut self, chords: &mut [Chord], rings: &[TracedRing], corners: &[Corner], tolerance: f64) {
-        self.choose_witnesses(chords);
-        chords.sort_unstable_by_key(|chord| (chord.extent(0), chord.extent(1), chord.ring, chord.ends));
-        mark_meeting(chords);
-        self.mark_passing_over(chords, rings, corners, tolerance);
         self.found.clear();
+        if chords.iter().all(Chord::is_exact) {
+            return;
+        }
+        self.mark_meeting(chords);
+        if rings.len() > 1 {
+            self.mark_passing_over(chords, rings, corners, tolerance);
+        }
         self.found.extend((0..chords.len()).filter(|&at| chords[at].found));
     }
 
-    /// The chords come ring by ring.
-    fn choose_witnesses(&mut self, chords: &[Chord]) {
-        self.witnesses.clear();
-        let first = |ring: &[Chord]| (ring[0].corners[0], ring[0].ring);
-        self.witnesses.extend(chords.chunk_by(|a, b| a.ring == b.ring).map(first));
-        self.witnesses.sort_unstable();
+    fn mark_meeting(&mut self, chords: &mut [Chord]) {
+        self.passages.clear();
+        for (index, chord) in (0..).zip(&*chords) {
+            let ([left, _], [top, bottom]) = (chord.extent(0), chord.extent(1));
+            self.passages.extend((top / BAND..=bottom / BAND).map(|band| (band, left, index)));
+        }
+        self.passages.sort_unstable();
+        for (at, &(band, _, index)) in self.passages.iter().enumerate() {
+            let chord = chords[index as usize];
+            let ([_, right], [top, bottom]) = (chord.extent(0), chord.extent(1));
+            let near = self.passages[at + 1..].iter().take_while(|(other, left, _)| *other == band && *left <= right);
+            for &(_, _, other_index) in near {
+                let other = chords[other_index as usize];
+                let [other_top, other_bottom] = other.extent(1);
+                let both_exact = chord.is_exact() && other.is_exact();
+                if !both_exact && other_top <= bottom && top <= other_bottom && chord.meets(&other) {
+                    chords[index as usize].found |= !chord.is_exact();
+                    chords[other_index as usize].found |= !other.is_exact();
+                }
+            }
+        }
     }
 
     fn mark_passing_over(&mut self, chords: &mut [Chord], rings: &[TracedRing], corners: &[Corner], tolerance: f64) {
-        if rings.len() < 2 {
-            return;
-        }
+        self.witnesses.clear();
+        let witness = |ring: &[Chord]| (ring[0].corners[0][1] / BAND, ring[0].corners[0], ring[0].ring);
+        self.witnesses.extend(chords.chunk_by(|a, b| a.ring == b.ring).map(witness));
+        self.witnesses.sort_unstable();
+        let reach = tolerance.min(f64::from(u16::MAX)).ceil() as u16;
         for chord in chords.iter_mut().filter(|chord| !chord.is_exact()) {
             let cycle = Cycle::of(&rings[chord.ring as usize], corners);
             let segment = Segment::new(chord.corners[0], chord.corners[1]);
-            let ([left, right], [top, bottom]) = (chord.extent(0), chord.extent(1));
-            let reach = tolerance.min(f64::from(u16::MAX)).ceil() as u16;
-            let rows = top.saturating_sub(reach)..=bottom.saturating_add(reach);
-            let from = self.witnesses.partition_point(|(corner, _)| corner[0] < left.saturating_sub(reach));
-            let near = self.witnesses[from..].iter().take_while(|(corner, _)| corner[0] <= right.saturating_add(reach));
-            chord.found |= near
-                .filter(|(corner, ring)| *ring != chord.ring && rows.contains(&corner[1]))
-                .any(|&(corner, _)| segment.distance(corner) <= tolerance && chord.passes_over(corner, &cycle));
-        }
-    }
-}
-
-/// Marks the chords that meet others; they are sorted by their first column.
-fn mark_meeting(chords: &mut [Chord]) {
-    for at in 0..chords.len() {
-        let chord = chords[at];
-        let ([_, right], [top, bottom]) = (chord.extent(0), chord.extent(1));
-        for next in at + 1..chords.len() {
-            let other = chords[next];
-            let ([left, _], [other_top, other_bottom]) = (other.extent(0), other.extent(1));
-            if left > right {
-                break;
-            }
-            let both_exact = chord.is_exact() && other.is_exact();
-            if other_top <= bottom && top <= other_bottom && !both_exact && chord.meets(&other) {
-                chords[at].found |= !chord.is_exact();
-                chords[next].found |= !other.is_exact();
+            let [[left, right], [top, bottom]] =
+                [0, 1].map(|axis| chord.extent(axis)).map(|[a, b]| [a.saturating_sub(reach), b.saturating_add(reach)]);
+            for band in top / BAND..=bottom / BAND {
+                let from = self.witnesses.partition_point(|(other, corner, _)| (*other, corner[0]) < (band, left));
+                let near = &self.witnesses[from..];
+                chord.found |= near
+                    .iter()
+                    .take_while(|(other, corner, _)| *other == band && corner[0] <= right)
+                    .filter(|(_, corner, ring)| *ring != chord.ring && segment.distance(*corner) <= tolerance)
+                    .any(|&(_, corner, _)| chord.passes_over(corner, &cycle));
             }
         }
     }
