@@ -116,11 +116,22 @@ impl Outliner {
         tracer.trace(detection)?;
         for rings in tracer.rings.chunk_by(|a, b| a.label == b.label) {
             simplifier.simplify(rings, &tracer.corners, &mut tracer.keep);
+            let first = outlines.ends();
+            outlines.add_rings(rings, &tracer.corners, &tracer.keep);
+            outlines.add_hull(huller, rings, &tracer.corners);
             let plane = &detection.planes[usize::from(rings[0].label) - 1];
-            outlines.add(plane, rings, &tracer.corners, &tracer.keep, huller, fitter);
+            outlines.add_plane(fitter, plane, first);
         }
         Ok(outlines)
     }
+}
+
+/// How many rings, corners and corners of hulls there are.
+#[derive(Clone, Copy)]
+struct Ends {
+    rings: usize,
+    corners: usize,
+    hulls: usize,
 }
 
 impl Outlines {
@@ -132,63 +143,56 @@ impl Outlines {
         self.planes.clear();
     }
 
-    /// Adds a plane of the rings given, of whose corners some are kept.
-    fn add(
-        &mut self,
-        plane: &Plane,
-        traced: &[TracedRing],
-        corners: &[Corner],
-        keep: &[bool],
-        huller: &mut Huller,
-        fitter: &mut Fitter,
-    ) {
-        let (first_ring, first_corner, first_hull) = (self.rings.len(), self.corners.len(), self.hulls.len());
-        let outer = traced.iter().filter(|ring| !ring.is_hole);
-        huller.hull(outer.flat_map(|ring| &corners[ring.range()]), &mut self.hulls);
-        self.turn_to_camera(first_hull, Buffer::Hulls);
-        for ring in traced {
+    fn ends(&self) -> Ends {
+        Ends { rings: self.rings.len(), corners: self.corners.len(), hulls: self.hulls.len() }
+    }
+
+    /// Adds rings of those corners that are kept.
+    fn add_rings(&mut self, rings: &[TracedRing], corners: &[Corner], keep: &[bool]) {
+        for ring in rings {
             let start = self.corners.len();
             self.corners.extend(ring.range().filter(|&at| keep[at]).map(|at| corners[at]));
-            self.turn_to_camera(start, Buffer::Corners);
+            face_camera(&mut self.corners[start..], self.camera);
             self.rings.push(RingRecord { corners: start..self.corners.len(), is_hole: ring.is_hole });
         }
-        let hull = first_hull..self.hulls.len();
-        let surface = self.surface(plane, first_corner, first_hull);
+    }
+
+    /// Adds the hull of the outer rings.
+    fn add_hull(&mut self, huller: &mut Huller, rings: &[TracedRing], corners: &[Corner]) {
+        let start = self.hulls.len();
+        let outer = rings.iter().filter(|ring| !ring.is_hole);
+        huller.hull(outer.flat_map(|ring| &corners[ring.range()]), &mut self.hulls);
+        face_camera(&mut self.hulls[start..], self.camera);
+    }
+
+    /// Adds the plane of the rings and the hull since `first`.
+    fn add_plane(&mut self, fitter: &mut Fitter, plane: &Plane, first: Ends) {
+        let (surface, hull) = (self.surface(plane, first), &self.hulls[first.hulls..]);
         let record = PlaneRecord {
-            label: traced[0].label,
-            rings: first_ring..self.rings.len(),
-            rectangle_px: fitter.on_picture(&self.hulls[hull.clone()]),
-            rectangle_m: surface.zip(self.camera).map(|seen| fitter.on_plane(&self.hulls[hull.clone()], &seen)),
-            hull,
+            label: plane.label,
+            rings: first.rings..self.rings.len(),
+            hull: first.hulls..self.hulls.len(),
             surface,
+            rectangle_px: fitter.on_picture(hull),
+            rectangle_m: surface.zip(self.camera).map(|seen| fitter.on_plane(hull, &seen)),
         };
         self.planes.push(record);
     }
 
-    /// Rings are traced counter-clockwise on the picture; where that is mirrored, they turn round,
-    /// but for their first corner.
-    fn turn_to_camera(&mut self, start: usize, buffer: Buffer) {
-        let corners = match buffer {
-            Buffer::Corners => &mut self.corners[start..],
-            Buffer::Hulls => &mut self.hulls[start..],
-        };
-        let mirrored = self.camera.is_some_and(|camera| camera.fx * camera.fy < 0.0);
-        if let (true, [_, others @ ..]) = (mirrored, corners) {
-            others.reverse();
-        }
-    }
-
-    /// The plane in metres, if each corner of its last rings and hull lies before infinity on it.
-    fn surface(&self, plane: &Plane, first_corner: usize, first_hull: usize) -> Option<Hessian> {
+    /// The plane in metres, if each corner since `first` lies before infinity on it.
+    fn surface(&self, plane: &Plane, first: Ends) -> Option<Hessian> {
         let surface = plane.metric.filter(|metric| metric.area_m2.is_some())?.plane;
         let camera = self.camera?;
-        let mut corners = self.corners[first_corner..].iter().chain(&self.hulls[first_hull..]);
+        let mut corners = self.corners[first.corners..].iter().chain(&self.hulls[first.hulls..]);
         corners.all(|&corner| surface.point_at(outlines::point(corner), &camera).is_some()).then_some(surface)
     }
 }
 
-/// One of the two stores of corners.
-enum Buffer {
-    Corners,
-    Hulls,
+/// Rings are traced counter-clockwise on the picture; where that is mirrored, they turn round, but
+/// for their first corner.
+fn face_camera(ring: &mut [Corner], camera: Option<Intrinsics>) {
+    let mirrored = camera.is_some_and(|camera| camera.fx * camera.fy < 0.0);
+    if let (true, [_, others @ ..]) = (mirrored, ring) {
+        others.reverse();
+    }
 }

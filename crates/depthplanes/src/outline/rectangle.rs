@@ -76,8 +76,9 @@ impl Fitter {
     fn fit(&self) -> Placed {
         let n = self.points.len();
         let at = |k: usize| self.points[k % n];
-        let way = |k: usize| [at(k + 1)[0] - at(k)[0], at(k + 1)[1] - at(k)[1]];
-        let mut best: Option<(f64, Placed)> = None;
+        let way = |k: usize| [0, 1].map(|axis| at(k + 1)[axis] - at(k)[axis]);
+        let inwards = doubled_area(&self.points).signum();
+        let mut best = Placed { centre: at(0), axis: [1.0, 0.0], sides: [f64::INFINITY; 2] };
         let [mut right, mut top, mut left] = [0; 3];
         for i in 0..n {
             let [x, y] = way(i);
@@ -86,30 +87,31 @@ impl Fitter {
                 continue;
             }
             let along = [x / length, y / length];
-            // The hull lies on one side of the edge: that of the next edges.
-            let mut up = [-along[1], along[0]];
-            if (1..n).map(|k| dot(up, way(i + k))).find(|&rise| rise != 0.0).is_some_and(|rise| rise < 0.0) {
-                up = up.map(|x| -x);
-            }
-            let turned = |caliper: usize, from: usize, direction: [f64; 2]| {
-                (caliper.max(from)..i + n).find(|&k| dot(direction, way(k)) <= 0.0).unwrap_or(i + n)
+            let up = [-along[1] * inwards, along[0] * inwards];
+            // Each caliper moves on while the hull still goes its way.
+            let moved = |caliper: usize, direction: [f64; 2]| {
+                (caliper..i + n).find(|&k| dot(direction, way(k)) <= 0.0).unwrap_or(i + n)
             };
-            right = turned(right, i + 1, along);
-            top = turned(top, right, up);
-            left = turned(left, top, along.map(|x| -x));
-            let span = |direction: [f64; 2], low: usize, high: usize| {
-                let (low, high) = (dot(direction, at(low)), dot(direction, at(high)));
-                (high - low, (high + low) / 2.0)
-            };
-            let ((width, middle), (height, rise)) = (span(along, left, right), span(up, i, top));
-            if best.as_ref().is_none_or(|(area, _)| width * height < *area) {
-                let centre = [middle * along[0] + rise * up[0], middle * along[1] + rise * up[1]];
-                let (axis, sides) = if width >= height { (along, [width, height]) } else { (up, [height, width]) };
-                best = Some((width * height, Placed { centre, axis, sides }));
+            right = moved(right.max(i + 1), along);
+            top = moved(top.max(right), up);
+            left = moved(left.max(top), along.map(|x| -x));
+            let found = Placed::between([along, up], [[at(left), at(right)], [at(i), at(top)]]);
+            if found.area() < best.area() {
+                best = found;
             }
         }
-        best.map_or(Placed { centre: at(0), axis: [1.0, 0.0], sides: [0.0; 2] }, |(_, placed)| placed)
+        best
     }
+}
+
+/// Twice the area of a ring of points, above 0 if it goes round from the first axis to the second.
+fn doubled_area(points: &[[f64; 2]]) -> f64 {
+    let from = |point: [f64; 2]| [point[0] - points[0][0], point[1] - points[0][1]];
+    let cross = |pair: &[[f64; 2]]| {
+        let (a, b) = (from(pair[0]), from(pair[1]));
+        a[0] * b[1] - b[0] * a[1]
+    };
+    points.windows(2).map(cross).sum()
 }
 
 /// A rectangle in two coordinates.
@@ -117,6 +119,22 @@ struct Placed {
     centre: [f64; 2],
     axis: [f64; 2],
     sides: [f64; 2],
+}
+
+impl Placed {
+    /// The rectangle whose sides along each of two axes go through a first and a last point.
+    fn between(axes: [[f64; 2]; 2], ends: [[[f64; 2]; 2]; 2]) -> Self {
+        let reach = [0, 1].map(|k| ends[k].map(|point| dot(axes[k], point)));
+        let [width, height] = reach.map(|[low, high]| high - low);
+        let middle = reach.map(|[low, high]| (low + high) / 2.0);
+        let centre = [0, 1].map(|i| middle[0] * axes[0][i] + middle[1] * axes[1][i]);
+        let (axis, sides) = if width >= height { (axes[0], [width, height]) } else { (axes[1], [height, width]) };
+        Placed { centre, axis, sides }
+    }
+
+    fn area(&self) -> f64 {
+        self.sides[0] * self.sides[1]
+    }
 }
 
 fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
