@@ -29,9 +29,9 @@ pub struct Coplanar {
 }
 
 impl Default for Coplanar {
-    /// 3 degrees and 3 centimetres: what depth cameras leave between pieces of a wall a few metres away (the normals of
-    /// a thousand pixels are known to a degree or two, depth is off by a per cent), and less than what sets planes
-    /// apart that are two in a room: a door leaf in its frame, a board on a table.
+    /// 3 degrees and 3 centimetres: what a depth camera's error leaves between pieces of a wall a few metres away, where
+    /// normals of a thousand pixels are off by a degree or two and depth by a per cent. Things thinner than that, a book
+    /// or a board, are joined with what they lie on; where these matter, take less.
     fn default() -> Self {
         Coplanar { angle_deg: 3.0, distance_m: 0.03 }
     }
