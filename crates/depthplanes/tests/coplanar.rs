@@ -228,3 +228,44 @@ fn what_is_in_metres_needs_a_camera() {
         assert!(matches!(Coplanar::new(angle, distance), Err(Error::Parameter { .. })));
     }
 }
+
+/// The truth plane that most of each found plane's pixels lie on, if that is more than half of them.
+fn truths(frame: &SceneFrame, found: &Detection) -> Vec<Option<u16>> {
+    let most = |plane: &depthplanes::Plane| {
+        let mut counts = vec![0; frame.truth.planes.len() + 1];
+        for (&truth, _) in frame.truth.labels.iter().zip(&found.labels).filter(|(_, label)| **label == plane.label) {
+            counts[usize::from(truth)] += 1;
+        }
+        (1..=frame.truth.planes.len()).find(|&at| 2 * counts[at] > plane.pixel_count).map(|at| at as u16)
+    };
+    found.planes.iter().map(most).collect()
+}
+
+#[test]
+fn pieces_of_one_plane_of_a_room_are_joined_and_others_are_nearly_coplanar() {
+    let (mut together, mut same, mut apart, mut wrong) = (0, 0, 0, 0);
+    for seed in 101..=110 {
+        let frame = format!("room:seed={seed},sensor=tof").parse::<Spec>().unwrap().frame().unwrap();
+        let detector = || Detector::new(Planar { min: 300, ..Planar::default() }).unwrap().sensor(frame.sensor);
+        let before = detector().detect(frame.view()).unwrap().clone();
+        let mut joining = detector().merge_coplanar(Coplanar::default()).unwrap();
+        let new = coarsening(&before, joining.detect(frame.view()).unwrap());
+        let truths = truths(&frame, &before);
+        for a in 0..truths.len() {
+            for b in 0..a {
+                let (Some(of_a), Some(of_b)) = (truths[a], truths[b]) else { continue };
+                let is_joined = new[a + 1] == new[b + 1];
+                same += usize::from(of_a == of_b);
+                together += usize::from(of_a == of_b && is_joined);
+                apart += usize::from(of_a != of_b && is_joined);
+                let [p, q] = [of_a, of_b].map(|label| frame.truth.planes[usize::from(label) - 1].plane);
+                let middle = before.planes[b].metric.unwrap().centroid_m;
+                let at = p.normal.iter().zip(middle).map(|(n, x)| n * x).sum::<f64>() + p.distance;
+                wrong += usize::from(is_joined && (degrees(p.normal, q.normal) > 6.0 || at.abs() > 0.06));
+            }
+        }
+    }
+    println!("{together} of {same} pairs of one plane joined, {apart} of two planes, {wrong} of them wrong");
+    assert!(100 * together >= 65 * same);
+    assert_eq!(wrong, 0);
+}

@@ -25,10 +25,11 @@ impl<T: Pixel> Records<'_, T> {
     pub(super) fn join(&mut self, joiner: Option<&mut Joiner>, out: &mut Detection) {
         let Records { map, groups, margin, seen, selection, describer } = self;
         let Some(joiner) = joiner else { return };
-        if !joiner.join(&out.planes, selection.runs(groups)) {
+        let is_any_joined = joiner.join(&out.planes, selection.runs(groups));
+        joiner.parts(&out.planes, &mut out.parts);
+        if !is_any_joined {
             return;
         }
-        joiner.parts(&out.planes, &mut out.parts);
         selection.relabel(|label| joiner.labels()[usize::from(label) - 1]);
         let runs = selection.runs(groups);
         describer.tally(map, runs, *margin, seen.sensor);
