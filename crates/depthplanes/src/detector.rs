@@ -1,6 +1,7 @@
 //! The front door: one method, one sensor, and the memory they reuse from frame to frame.
 
 use crate::camera::Sensor;
+use crate::coplanar::{Coplanar, Joiner};
 use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::map::AnyView;
@@ -28,6 +29,7 @@ pub struct Detector {
     method: Box<dyn Method>,
     sensor: Sensor,
     threads: usize,
+    joiner: Option<Joiner>,
     detection: Detection,
 }
 
@@ -45,7 +47,7 @@ impl Detector {
 
     /// A detector of a method that was built by name ([`crate::methods::find`]).
     pub fn from_method(method: Box<dyn Method>) -> Self {
-        Detector { method, sensor: Sensor::default(), threads: 1, detection: Detection::default() }
+        Detector { method, sensor: Sensor::default(), threads: 1, joiner: None, detection: Detection::default() }
     }
 
     /// States what the map's numbers mean and which camera saw them; needed for metric planes.
@@ -60,9 +62,21 @@ impl Detector {
         self
     }
 
+    /// Joins separate pieces of one geometric plane: one record for their union, fitted anew from all of its pixels, and
+    /// the pieces' own in [`Detection::parts`]. Needs a sensor whose planes are in metres. See [`crate::coplanar`].
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if a limit is out of range.
+    pub fn merge_coplanar(mut self, within: Coplanar) -> Result<Self> {
+        self.joiner = Some(Joiner::new(within)?);
+        Ok(self)
+    }
+
     /// Finds planes in one map.
     ///
     /// # Errors
+    /// [`Error::NotMetric`] if coplanar planes are to be joined, or a parameter is in metres, and the sensor is not known
+    /// well enough for planes in metres.
     /// [`Error::TooManyPlanes`] if there are more planes than 16-bit labels can name.
     pub fn detect<'m>(&mut self, map: impl Into<AnyView<'m>>) -> Result<&Detection> {
         self.detect_observed(map, &mut |_| ())
@@ -77,7 +91,12 @@ impl Detector {
         map: impl Into<AnyView<'m>>,
         observer: &mut dyn FnMut(&'static str),
     ) -> Result<&Detection> {
-        let mut job = Job { sensor: self.sensor, threads: self.threads, observer };
+        if self.joiner.is_some() {
+            self.sensor.check_metric("merge-coplanar")?;
+        }
+        self.detection.parts.clear();
+        let joiner = self.joiner.as_mut();
+        let mut job = Job { sensor: self.sensor, threads: self.threads, joiner, observer };
         self.method.run(map.into(), &mut job, &mut self.detection)?;
         Ok(&self.detection)
     }

@@ -3,8 +3,7 @@
 use super::outline::OutlineRecord;
 use super::{Report, Spread, Times};
 use depthplanes::methods::ParamKind;
-use depthplanes::outline::Outlines;
-use depthplanes::{CovarianceSource, Intrinsics, Measure, Plane};
+use depthplanes::{Coplanar, CovarianceSource, Intrinsics, Measure, Plane};
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
@@ -30,6 +29,8 @@ pub(super) struct FrameRecord<'a> {
     labelled_share: f64,
     warnings: &'a [String],
     #[serde(skip_serializing_if = "Option::is_none")]
+    merge_coplanar: Option<CoplanarRecord>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     outline_tolerance_px: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     time_ms: Option<Map<String, Value>>,
@@ -53,6 +54,12 @@ struct IntrinsicsRecord {
 }
 
 #[derive(Serialize)]
+struct CoplanarRecord {
+    angle_deg: f64,
+    distance_m: f64,
+}
+
+#[derive(Serialize)]
 struct PlaneRecord {
     label: u16,
     pixel_count: usize,
@@ -63,6 +70,8 @@ struct PlaneRecord {
     metric: Option<MetricRecord>,
     #[serde(skip_serializing_if = "Option::is_none")]
     outline: Option<OutlineRecord>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    parts: Vec<PlaneRecord>,
 }
 
 #[derive(Serialize)]
@@ -111,9 +120,10 @@ impl<'a> From<&Report<'a>> for FrameRecord<'a> {
             labelled_pixels: detection.labelled_pixels(),
             labelled_share: detection.labelled_share(),
             warnings: &frame.warnings,
+            merge_coplanar: report.coplanar.map(CoplanarRecord::from),
             outline_tolerance_px: report.outlines.map(|outlines| outlines.tolerance_px()),
             time_ms: report.times.map(times),
-            planes: detection.planes.iter().map(|plane| PlaneRecord::new(plane, report.outlines)).collect(),
+            planes: detection.planes.iter().map(|plane| PlaneRecord::with_all(plane, report)).collect(),
         }
     }
 }
@@ -154,8 +164,21 @@ impl From<Intrinsics> for IntrinsicsRecord {
     }
 }
 
+impl From<Coplanar> for CoplanarRecord {
+    fn from(within: Coplanar) -> Self {
+        CoplanarRecord { angle_deg: within.angle_deg, distance_m: within.distance_m }
+    }
+}
+
 impl PlaneRecord {
-    fn new(plane: &Plane, outlines: Option<&Outlines>) -> Self {
+    /// With its outline and its parts.
+    fn with_all(plane: &Plane, report: &Report<'_>) -> Self {
+        let outline = report.outlines.and_then(|outlines| outlines.get(plane.label)).map(OutlineRecord::from);
+        let parts = report.detection.parts_of(plane.label).iter().map(|part| PlaneRecord::new(&part.plane)).collect();
+        PlaneRecord { outline, parts, ..PlaneRecord::new(plane) }
+    }
+
+    fn new(plane: &Plane) -> Self {
         let pixels = plane.bounding_box;
         PlaneRecord {
             label: plane.label,
@@ -181,7 +204,8 @@ impl PlaneRecord {
                     CovarianceSource::Residuals => "residuals",
                 },
             }),
-            outline: outlines.and_then(|outlines| outlines.get(plane.label)).map(OutlineRecord::from),
+            outline: None,
+            parts: Vec::new(),
         }
     }
 }

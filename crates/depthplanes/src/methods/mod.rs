@@ -4,8 +4,10 @@
 
 mod ngaf;
 mod planar;
+mod records;
 
 use crate::camera::Sensor;
+use crate::coplanar::Joiner;
 use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::map::AnyView;
@@ -95,7 +97,7 @@ pub trait Method: Send {
     /// Finds planes. `job.done(stage)` is called as each stage ends.
     ///
     /// # Errors
-    /// [`Error::TooManyPlanes`].
+    /// [`Error::TooManyPlanes`]; [`Error::NotMetric`] for a parameter in metres without a camera.
     fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()>;
 }
 
@@ -105,6 +107,8 @@ pub struct Job<'a> {
     pub sensor: Sensor,
     /// Threads to use, 1 and up; the answer does not depend on it.
     pub threads: usize,
+    /// Joins coplanar planes, if that is wanted.
+    pub joiner: Option<&'a mut Joiner>,
     /// Told the name of each stage as it ends.
     pub observer: &'a mut dyn FnMut(&'static str),
 }
