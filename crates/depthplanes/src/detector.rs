@@ -3,6 +3,7 @@
 use crate::camera::Sensor;
 use crate::detection::Detection;
 use crate::error::{Error, Result};
+use crate::explanation::Explanation;
 use crate::map::AnyView;
 use crate::methods::{Job, Method};
 
@@ -80,5 +81,31 @@ impl Detector {
         let mut job = Job { sensor: self.sensor, threads: self.threads, observer };
         self.method.run(map.into(), &mut job, &mut self.detection)?;
         Ok(&self.detection)
+    }
+
+    /// Says why the pixel in column `at[0]`, row `at[1]` belongs to a plane or to none: what each stage saw there, and
+    /// which parameters would let it in. Runs the method several times and allocates; [`Detector::detect`] pays
+    /// nothing for it.
+    ///
+    /// # Errors
+    /// [`Error::Pixel`] for a pixel outside of the map, and those of [`Detector::detect`].
+    ///
+    /// ```
+    /// use depthplanes::{DepthView, Detector, Planar};
+    /// let wall = [1000u16; 64];
+    /// let mut detector = Detector::new(Planar::default())?;
+    /// let why = detector.explain(DepthView::new(&wall, 8, 8)?, [3, 4])?;
+    /// assert_eq!(why.verdict.kind(), "small"); // 64 pixels, and `min` is 100
+    /// assert_eq!(why.suggestions[0].parameters[0].0, "min");
+    /// # Ok::<(), depthplanes::Error>(())
+    /// ```
+    pub fn explain<'m>(&mut self, map: impl Into<AnyView<'m>>, at: [usize; 2]) -> Result<Explanation> {
+        let map = map.into();
+        let (width, height) = (map.width(), map.height());
+        if at[0] >= width || at[1] >= height {
+            return Err(Error::Pixel { at, width, height });
+        }
+        let mut job = Job { sensor: self.sensor, threads: self.threads, observer: &mut |_| () };
+        self.method.explain(map, &mut job, at)
     }
 }

@@ -12,6 +12,7 @@ pub mod detection;
 mod detector;
 pub mod enhance;
 pub mod error;
+pub mod explanation;
 pub mod fit;
 pub mod group;
 pub mod map;
@@ -25,6 +26,7 @@ pub use camera::{Hessian, Intrinsics, Measure, Sensor};
 pub use detection::{CovarianceSource, Detection, Plane};
 pub use detector::Detector;
 pub use error::{Error, Result};
+pub use explanation::Explanation;
 pub use map::{AnyView, DepthView, Pixel};
 pub use methods::{Ngaf, Planar};
 

@@ -4,10 +4,12 @@
 
 mod ngaf;
 mod planar;
+mod tries;
 
 use crate::camera::Sensor;
 use crate::detection::Detection;
 use crate::error::{Error, Result};
+use crate::explanation::{Explanation, Verdict};
 use crate::map::AnyView;
 
 pub use ngaf::Ngaf;
@@ -97,6 +99,18 @@ pub trait Method: Send {
     /// # Errors
     /// [`Error::TooManyPlanes`].
     fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()>;
+
+    /// Says what its stages see at a pixel of the map, and what would give it a plane. A method that does not
+    /// know says only what it found.
+    ///
+    /// # Errors
+    /// As [`Method::run`].
+    fn explain(&mut self, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) -> Result<Explanation> {
+        let mut out = Detection::default();
+        self.run(map, job, &mut out)?;
+        let verdict = Verdict::Unexplained { label: out.labels[at[1] * out.width + at[0]] };
+        Ok(Explanation { at, method: self.info().name, findings: Vec::new(), verdict, suggestions: Vec::new() })
+    }
 }
 
 /// What a method needs beside the map.

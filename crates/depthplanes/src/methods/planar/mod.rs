@@ -6,6 +6,7 @@
 
 mod assign;
 mod curved;
+mod explain;
 mod explained;
 mod field;
 mod grow;
@@ -19,6 +20,7 @@ use crate::camera::Sensor;
 use crate::describe::{Describer, Seen};
 use crate::detection::Detection;
 use crate::error::{Error, Result};
+use crate::explanation::Explanation;
 use crate::group::{Grouper, LinkRule};
 use crate::map::{AnyView, DepthView, Pixel};
 use crate::noise::{NoiseModel, SensorNoise, Space};
@@ -114,6 +116,11 @@ impl Planar {
         [min.into(), noise, noise_growth, confidence]
     }
 
+    /// Fewest pixels of a region of tiles: a plane has many of its pixels in tiles that it shares with others.
+    fn least(&self) -> f64 {
+        f64::from(self.min) * 0.5
+    }
+
     /// What the parameters say of the noise, if anything.
     fn noise(&self, space: Space) -> Option<SensorNoise> {
         let is_stated = self.noise > 0.0 || (space != Space::Value && self.noise_growth > 0.0);
@@ -162,19 +169,46 @@ impl Method for Runner {
     }
 
     fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        with_view!(map, map => self.planar(map, job, out))
+        with_view!(map, map => self.planar(map, job, out, &mut |_, _, _| ()))
+    }
+
+    fn explain(&mut self, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) -> Result<Explanation> {
+        explain::explain(self, map, job, at)
     }
 }
 
+/// Places of a run where [`explain`] looks at what there is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Moment {
+    /// Regions have grown.
+    Grown,
+    /// Those that one plane explains are merged, none is dropped yet.
+    Merged,
+    /// It is known which are curved and which are explained by others.
+    Judged,
+    /// Every pixel has its region.
+    Assigned,
+}
+
+/// Told of each moment of a run.
+type Watch<'a> = dyn FnMut(Moment, &Runner, &NoiseModel) + 'a;
+
 impl Runner {
-    fn planar<T: Pixel>(&mut self, map: DepthView<'_, T>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
+    fn planar<T: Pixel>(
+        &mut self,
+        map: DepthView<'_, T>,
+        job: &mut Job<'_>,
+        out: &mut Detection,
+        watch: &mut Watch<'_>,
+    ) -> Result<()> {
         let noise = self.sum_tiles(&map, &job.sensor);
         job.done("tiles");
-        self.grow(&noise)?;
+        self.grow(&noise, watch)?;
         job.done("grow");
-        self.judge(&noise);
+        self.judge(&noise, watch);
         job.done("judge");
         self.assign(&noise);
+        watch(Moment::Assigned, self, &noise);
         job.done("assign");
         let Runner { params, field, image, grouper, selection, describer, .. } = self;
         let ids =
@@ -208,23 +242,26 @@ impl Runner {
     }
 
     /// Regions of cells on one plane.
-    fn grow(&mut self, noise: &NoiseModel) -> Result<()> {
-        let Runner { params, pyramid, regions, merger, .. } = self;
-        pyramid.expect(noise, params.confidence);
-        regions.grow(pyramid, params.confidence);
-        merger.merge(&mut pyramid.grids[0], regions, f64::from(params.min) * 0.5)
+    fn grow(&mut self, noise: &NoiseModel, watch: &mut Watch<'_>) -> Result<()> {
+        self.pyramid.expect(noise, self.params.confidence);
+        self.regions.grow(&mut self.pyramid, self.params.confidence);
+        watch(Moment::Grown, self, noise);
+        self.merger.merge(&self.pyramid.grids[0], &mut self.regions);
+        watch(Moment::Merged, self, noise);
+        self.merger.drop_small(&mut self.pyramid.grids[0], &mut self.regions, self.params.least())
     }
 
     /// Which regions are curved, and which are no surface.
-    fn judge(&mut self, noise: &NoiseModel) {
+    fn judge(&mut self, noise: &NoiseModel, watch: &mut Watch<'_>) {
         let Runner { params, field, pyramid, regions, merger, facets, explainer, .. } = self;
         facets.mark(pyramid, regions, &merger.pairs, noise);
-        let grid = &mut pyramid.grids[0];
         let planes = Planes { regions: &regions.all, noise, confidence: params.confidence };
-        explainer.find(field, grid, &planes, &merger.pairs, &facets.boxes);
+        explainer.find(field, &pyramid.grids[0], &planes, &merger.pairs, &facets.boxes);
+        watch(Moment::Judged, self, noise);
+        let Runner { pyramid, regions, merger, explainer, .. } = self;
         let mut explained = explainer.is_explained.iter();
         let is_explained = |_: &grow::Region| explained.next() == Some(&true);
-        merger.drop(grid, regions, is_explained);
+        merger.drop(&mut pyramid.grids[0], regions, is_explained);
     }
 
     /// The region of every pixel.
