@@ -19,6 +19,7 @@ pub(crate) use flags::Reading;
 /// What the user wants.
 pub(crate) enum Command {
     Detect(Box<Detect>),
+    Explain(Box<Explain>),
     Inspect { inputs: Vec<OsString>, reading: Box<Reading>, json: bool },
     Noise { inputs: Vec<OsString>, reading: Box<Reading>, json: bool },
     Score(Score),
@@ -50,6 +51,17 @@ pub(crate) struct Detect {
     pub(crate) threads: usize,
 }
 
+/// `depthplanes explain`.
+pub(crate) struct Explain {
+    pub(crate) input: OsString,
+    pub(crate) at: [usize; 2],
+    pub(crate) reading: Reading,
+    pub(crate) method: &'static MethodInfo,
+    pub(crate) parameters: Vec<(&'static str, f64)>,
+    pub(crate) noise_table: Option<PathBuf>,
+    pub(crate) json: bool,
+}
+
 /// `depthplanes score`.
 pub(crate) struct Score {
     pub(crate) truth: OsString,
@@ -65,6 +77,7 @@ pub(crate) fn parse() -> Command {
     let (name, matches) = matches.subcommand().expect("a command is required");
     match name {
         "detect" => Command::Detect(Box::new(detect(matches))),
+        "explain" => Command::Explain(Box::new(explain(matches))),
         "inspect" => Command::Inspect {
             inputs: inputs(matches),
             reading: Box::new(Reading::from_matches(matches)),
@@ -130,6 +143,7 @@ fn program() -> clap::Command {
         .arg_required_else_help(true)
         .subcommands([
             detect_command(),
+            explain_command(),
             inspect_command(),
             noise_command(),
             score_command(),
@@ -159,6 +173,20 @@ fn detect_command() -> clap::Command {
         .arg(flags::noise_table())
         .args(output_flags())
         .args(running_flags())
+}
+
+fn explain_command() -> clap::Command {
+    let input = Arg::new("input").value_name("INPUT").required(true).value_parser(value_parser!(OsString));
+    clap::Command::new("explain")
+        .about("Says why a pixel belongs to a plane or to none: what each stage saw there, and what to change")
+        .after_help(EXIT_CODES)
+        .arg(input.help("A file, - for standard input, or scene:SPEC for a made-up scene"))
+        .arg(flags::pixel("at").required(true).help("The pixel: column and row, from 0"))
+        .args(flags::reading())
+        .arg(method_arg("method").long("method").default_value(METHODS[0].name).help("How to look for planes"))
+        .args(flags::method_parameters())
+        .arg(flags::noise_table())
+        .arg(flags::switch("json", "Print one JSON document"))
 }
 
 fn output_flags() -> Vec<Arg> {
@@ -258,6 +286,18 @@ fn detect(matches: &ArgMatches) -> Detect {
         repeat: matches.get_one("repeat").copied().unwrap_or(0),
         jobs: count("jobs"),
         threads: count("threads"),
+    }
+}
+
+fn explain(matches: &ArgMatches) -> Explain {
+    Explain {
+        input: matches.get_one::<OsString>("input").cloned().expect("it is required"),
+        at: *matches.get_one("at").expect("it is required"),
+        reading: Reading::from_matches(matches),
+        method: method(matches).expect("it has a default"),
+        parameters: flags::parameters_given(matches),
+        noise_table: path(matches, "noise-table"),
+        json: matches.get_flag("json"),
     }
 }
 

@@ -29,7 +29,8 @@ impl Recipe {
         Ok(Recipe { method, values, threads })
     }
 
-    fn detector(&self, sensor: Sensor) -> Detector {
+    /// A detector of it for a sensor.
+    pub(crate) fn detector(&self, sensor: Sensor) -> Detector {
         let method = (self.method.build)(&self.values).expect("the parameters were checked");
         Detector::from_method(method).threads(self.threads).sensor(sensor)
     }
