@@ -8,6 +8,7 @@ mod flags;
 
 use clap::{Arg, ArgMatches, builder::PossibleValuesParser, value_parser};
 use depthplanes::methods::{self, METHODS, MethodInfo};
+use depthplanes::outline::DEFAULT_TOLERANCE_PX;
 use depthplanes_io::outputs::{OUTPUTS, Output};
 use std::ffi::OsString;
 use std::io::Write;
@@ -44,6 +45,8 @@ pub(crate) struct Detect {
     pub(crate) outputs: Vec<(&'static Output, PathBuf)>,
     pub(crate) out_dir: Option<PathBuf>,
     pub(crate) legend: bool,
+    /// Tolerance of the planes' outlines, pixels, if they are wanted.
+    pub(crate) outlines: Option<f64>,
     pub(crate) json: bool,
     pub(crate) rows: usize,
     pub(crate) repeat: usize,
@@ -200,10 +203,21 @@ fn output_flags() -> Vec<Arg> {
     all.extend([
         flags::path("out-dir", "DIR").help(out_dir).help_heading("Output"),
         flags::switch("legend", "Put a legend beside the overlay and numbers on its planes").help_heading("Output"),
+        outlines_flag().help_heading("Output"),
         flags::switch("json", "Print the record as JSON; one line for each of several inputs").help_heading("Output"),
         flags::count("rows", "N").default_value("20").help("Planes in the printed table").help_heading("Output"),
     ]);
     all
+}
+
+fn outlines_flag() -> Arg {
+    let help = format!(
+        "Put the planes' outlines into the JSON record and onto the overlay, and simplify those of the mesh, \
+         to within PX pixels [default {DEFAULT_TOLERANCE_PX}; 0 keeps every corner]"
+    );
+    // With `=`, so that the word after the flag is never taken for its value.
+    let flag = flags::number("outlines", "PX").long("outlines").num_args(0..=1).require_equals(true);
+    flag.default_missing_value(DEFAULT_TOLERANCE_PX.to_string()).help(help)
 }
 
 fn running_flags() -> Vec<Arg> {
@@ -281,6 +295,7 @@ fn detect(matches: &ArgMatches) -> Detect {
         outputs: outputs.collect(),
         out_dir: path(matches, "out-dir"),
         legend: matches.get_flag("legend"),
+        outlines: matches.get_one("outlines").copied(),
         json: matches.get_flag("json"),
         rows: count("rows"),
         repeat: matches.get_one("repeat").copied().unwrap_or(0),

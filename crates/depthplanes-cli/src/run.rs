@@ -2,16 +2,29 @@
 
 use crate::failure::{Failure, Outcome};
 use depthplanes::methods::MethodInfo;
+use depthplanes::outline::{Outliner, Outlines};
 use depthplanes::{AnyView, Detection, Detector, Sensor};
 use depthplanes_io::Frame;
 use depthplanes_io::outputs::{Spread, Times};
 use std::time::Instant;
+
+/// The stage that makes outlines, after the method's own.
+const OUTLINE: &str = "outline";
 
 /// A method with the value of each parameter, checked.
 pub(crate) struct Recipe {
     pub(crate) method: &'static MethodInfo,
     pub(crate) values: Vec<f64>,
     threads: usize,
+    /// Tolerance of the planes' outlines, pixels, if they are wanted.
+    outlines: Option<f64>,
+}
+
+/// What was found in a frame.
+pub(crate) struct Found {
+    pub(crate) detection: Detection,
+    pub(crate) outlines: Option<Outlines>,
+    pub(crate) times: Option<Times>,
 }
 
 impl Recipe {
@@ -26,7 +39,21 @@ impl Recipe {
             values[at.ok_or_else(|| lacks(method, name))?] = value;
         }
         method.with(given)?;
-        Ok(Recipe { method, values, threads })
+        Ok(Recipe { method, values, threads, outlines: None })
+    }
+
+    /// With the planes' outlines, simplified to within so many pixels.
+    ///
+    /// # Errors
+    /// A tolerance that is not a number of pixels.
+    pub(crate) fn outlines(mut self, tolerance_px: Option<f64>) -> Outcome<Self> {
+        self.outlines = tolerance_px;
+        self.outliner()?;
+        Ok(self)
+    }
+
+    fn outliner(&self) -> Outcome<Option<Outliner>> {
+        Ok(self.outlines.map(Outliner::new).transpose()?)
     }
 
     /// A detector of it for a sensor.
@@ -46,34 +73,43 @@ pub(crate) struct Runner<'a> {
     recipe: &'a Recipe,
     sensor: Sensor,
     detector: Detector,
+    outliner: Option<Outliner>,
 }
 
 impl<'a> Runner<'a> {
     pub(crate) fn new(recipe: &'a Recipe) -> Self {
         let sensor = Sensor::default();
-        Runner { recipe, sensor, detector: recipe.detector(sensor) }
+        let outliner = recipe.outliner().expect("the tolerance was checked");
+        Runner { recipe, sensor, detector: recipe.detector(sensor), outliner }
     }
 
     /// Finds the planes of a frame; with `repeat` above 0 it also measures so many runs.
     ///
     /// # Errors
     /// Those of the library.
-    pub(crate) fn detect(&mut self, frame: &Frame, repeat: usize) -> Outcome<(Detection, Option<Times>)> {
+    pub(crate) fn detect(&mut self, frame: &Frame, repeat: usize) -> Outcome<Found> {
         if frame.sensor != self.sensor {
             self.sensor = frame.sensor;
             self.detector = self.recipe.detector(self.sensor);
         }
         let view = frame.view()?;
         let detection = self.detector.detect(view)?.clone();
+        let camera = self.sensor.intrinsics;
+        let outline = |outliner: &mut Outliner| outliner.outline(&detection, camera.as_ref()).cloned();
+        let outlines = self.outliner.as_mut().map(outline).transpose()?;
         let times = (repeat > 0).then(|| self.measure(view, repeat)).transpose()?;
-        Ok((detection, times))
+        Ok(Found { detection, outlines, times })
+    }
+
+    /// The method's stages, and that of outlines if they are wanted.
+    fn stages(&self) -> impl Iterator<Item = &'static str> {
+        self.recipe.method.stages.iter().copied().chain(self.outliner.is_some().then_some(OUTLINE))
     }
 
     /// Times so many runs over a map that the detector has seen before.
     fn measure(&mut self, view: AnyView<'_>, repeat: usize) -> Outcome<Times> {
         let mut totals = Vec::with_capacity(repeat);
-        let mut stages: Vec<(&'static str, Vec<f64>)> =
-            self.recipe.method.stages.iter().map(|&stage| (stage, vec![0.0; repeat])).collect();
+        let mut stages: Vec<(&'static str, Vec<f64>)> = self.stages().map(|stage| (stage, vec![0.0; repeat])).collect();
         for run in 0..repeat {
             let start = Instant::now();
             let mut stage_start = start;
@@ -84,7 +120,11 @@ impl<'a> Runner<'a> {
                 }
                 stage_start = now;
             };
-            self.detector.detect_observed(view, &mut observe)?;
+            let detection = self.detector.detect_observed(view, &mut observe)?;
+            if let Some(outliner) = &mut self.outliner {
+                outliner.outline(detection, self.sensor.intrinsics.as_ref())?;
+                observe(OUTLINE);
+            }
             totals.push(milliseconds(start.elapsed()));
         }
         let stages = stages.into_iter().map(|(name, times)| (name, spread(times))).collect();

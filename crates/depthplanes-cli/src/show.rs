@@ -72,7 +72,7 @@ pub(crate) fn table(report: &Report<'_>, most: usize) -> String {
 }
 
 fn metric_heading() -> Vec<String> {
-    row(["plane", "pixels", "share", "distance", "normal x", "y", "z", "rms", "columns", "rows"])
+    row(["plane", "pixels", "share", "distance", "normal x", "y", "z", "rms", "area", "columns", "rows"])
 }
 
 fn map_heading() -> Vec<String> {
@@ -80,10 +80,11 @@ fn map_heading() -> Vec<String> {
 }
 
 fn metric_row(plane: &Plane) -> Vec<String> {
-    let middle = plane.metric.map_or(unknown(5), |metric| {
+    let middle = plane.metric.map_or(unknown(6), |metric| {
         let mut cells = vec![format!("{:.3} m", metric.plane.distance)];
         cells.extend(metric.plane.normal.map(direction));
         cells.push(format!("{:.1} mm", 1e3 * metric.rms_m));
+        cells.push(metric.area_m2.map_or("-".into(), |area| format!("{area:.3} m2")));
         cells
     });
     assemble(plane, middle)

@@ -43,7 +43,7 @@ fn demo_leaves_a_depth_map_and_every_output() {
     let bench = Bench::new("demo");
     let out = bench.run(&["demo"]).ok();
     let folder = bench.folder.join("depthplanes-demo");
-    assert_eq!(names_in(&folder), ["cloud.ply", "depth.png", "labels.png", "overlay.png", "planes.json"]);
+    assert_eq!(names_in(&folder), ["cloud.ply", "depth.png", "labels.png", "mesh.ply", "overlay.png", "planes.json"]);
     let picture = folder.strip_prefix(&bench.folder).unwrap().join("overlay.png");
     assert!(out.contains(&format!("Look at {}", picture.display())), "{out}");
     let labels = depthplanes_io::read(folder.join("labels.png"), &ReadOptions::default()).unwrap();

@@ -80,14 +80,63 @@ fn repeat_measures_the_whole_and_each_stage() {
 fn all_outputs_are_written_and_can_be_read_again() {
     let bench = Bench::with_map("outputs");
     let camera = ["--encoding", "millimetre", "--intrinsics", "30,30,15.5,11.5"];
-    let files = ["--labels", "l.png", "--overlay", "o.png", "--planes", "p.json", "--cloud", "c.ply", "--legend"];
+    let files = [
+        "--labels",
+        "l.png",
+        "--overlay",
+        "o.png",
+        "--planes",
+        "p.json",
+        "--cloud",
+        "c.ply",
+        "--mesh",
+        "m.ply",
+        "--legend",
+    ];
     let out = bench.run(&[&["detect", "map.pgm"], &camera[..], &files].concat()).ok();
-    assert!(out.contains("wrote l.png, o.png, p.json, c.ply"), "{out}");
-    assert_eq!(bench.names(), ["c.ply", "l.png", "map.pgm", "o.png", "p.json"]);
+    assert!(out.contains("wrote l.png, o.png, p.json, c.ply, m.ply"), "{out}");
+    assert_eq!(bench.names(), ["c.ply", "l.png", "m.ply", "map.pgm", "o.png", "p.json"]);
     let record = json(&String::from_utf8(bench.read("p.json")).unwrap());
     assert!((record["planes"][0]["metric"]["distance_m"].as_f64().unwrap() - 1.503).abs() < 1e-9);
     let vertices = format!("element vertex {}\n", 32 * 24 - 16);
     assert!(String::from_utf8_lossy(&bench.read("c.ply")).contains(&vertices));
+    let mesh = bench.read("m.ply");
+    assert!(String::from_utf8_lossy(&mesh).contains("element vertex 10\n"), "a rectangle and an L-shape");
+    assert!(String::from_utf8_lossy(&mesh).contains("element face 6\n"));
+}
+
+#[test]
+fn outlines_are_in_the_record_and_in_the_times_where_they_are_asked_for() {
+    let bench = Bench::with_map("outlines");
+    let camera = ["--encoding", "millimetre", "--intrinsics", "30,-30,15.5,11.5"];
+    let words = [&["detect", "map.pgm", "--json", "--repeat", "2"], &camera[..]].concat();
+    let plain = json(&bench.run(&words).ok());
+    assert!(plain.get("outline_tolerance_px").is_none() && plain["planes"][0].get("outline").is_none());
+    assert!(plain["time_ms"].get("outline").is_none());
+    let record = json(&bench.run(&[&words[..], &["--outlines"]].concat()).ok());
+    assert_eq!(record["outline_tolerance_px"], 1.5);
+    assert!(record["time_ms"]["outline"]["median"].as_f64().unwrap() >= 0.0);
+    let (plane, outline) = (&record["planes"][0], &record["planes"][0]["outline"]);
+    // The picture is mirrored: counter-clockwise in space is clockwise on it.
+    assert_eq!(
+        outline["polygons_px"][0]["outer"],
+        serde_json::json!([[15.5, -0.5], [31.5, -0.5], [31.5, 23.5], [15.5, 23.5]])
+    );
+    let sides = &outline["rectangle_m"]["sides"];
+    let area = sides[0].as_f64().unwrap() * sides[1].as_f64().unwrap();
+    assert!((area - plane["metric"]["area_m2"].as_f64().unwrap()).abs() < 1e-5, "{record}");
+    let exact = json(&bench.run(&["detect", "map.pgm", "--json", "--outlines=0"]).ok());
+    assert_eq!(exact["outline_tolerance_px"], 0.0);
+    assert!(exact["planes"][0]["outline"]["polygons_m"].is_null());
+    assert!(exact["planes"][0]["outline"]["rectangle_px"].is_object());
+}
+
+#[test]
+fn outlines_are_drawn_on_the_overlay() {
+    let bench = Bench::with_map("outlined_overlay");
+    bench.run(&["detect", "map.pgm", "--overlay", "plain.png"]).ok();
+    bench.run(&["detect", "map.pgm", "--overlay", "outlined.png", "--outlines"]).ok();
+    assert_ne!(bench.read("plain.png"), bench.read("outlined.png"));
 }
 
 #[test]

@@ -77,9 +77,25 @@ fn the_room_of_the_page_on_planar_is_what_the_methods_find() {
     }
 }
 
+#[test]
+fn the_room_of_the_page_on_outlines_is_what_is_outlined() {
+    let bench = Bench::new("picture_of_outlines");
+    let scene = "scene:room:seed=2,sensor=tof,size=480x360";
+    bench.run(&["detect", scene, "--method", "planar", "--outlines", "--overlay", "outlines.png"]).ok();
+    check("outlines.png", &bench.read("outlines.png"));
+}
+
 fn overlay(method: &'static MethodInfo, frame: &Frame, detection: &Detection) -> Vec<u8> {
-    let report =
-        Report { source: SCENE, frame, method, parameters: &method.defaults(), detection, times: None, legend: false };
+    let report = Report {
+        source: SCENE,
+        frame,
+        method,
+        parameters: &method.defaults(),
+        detection,
+        outlines: None,
+        times: None,
+        legend: false,
+    };
     let output = OUTPUTS.iter().find(|output| output.name == "overlay").unwrap();
     (output.writer(Path::new("a.png")).unwrap().encode)(&report).unwrap()
 }

@@ -2,8 +2,10 @@
 
 mod support;
 
-use depthplanes::{Measure, Sensor};
+use depthplanes::outline::{Outliner, Outlines};
+use depthplanes::{Detection, Detector, Measure, Ngaf, Sensor};
 use depthplanes_io::outputs::{self, OUTPUTS, Output, OutputError, Report, Spread, Times};
+use depthplanes_io::{Frame, Pixels};
 use std::path::{Path, PathBuf};
 use support::{HEIGHT, WIDTH, detection, frame, golden, png_samples, report};
 
@@ -153,6 +155,105 @@ fn cloud_holds_every_valid_pixel_in_metres() {
     assert_eq!(labels.iter().filter(|&&label| label == 3).count(), detection.planes[2].pixel_count);
 }
 
+/// A made-up room and its planes, many of them with holes.
+fn room() -> (Frame, Detection) {
+    let scene = "room:seed=2,sensor=tof,size=160x120".parse::<depthplanes::scene::Spec>().unwrap().frame().unwrap();
+    let depthplanes::scene::ScenePixels::U16(pixels) = &scene.pixels else { panic!("millimetres") };
+    let mut detector = Detector::new(Ngaf { theta: 40.0, min: 8, ..Ngaf::default() }).unwrap().sensor(scene.sensor);
+    let found = detector.detect(scene.view()).unwrap().clone();
+    let (width, height) = (scene.width, scene.height);
+    (Frame { width, height, pixels: Pixels::U16(pixels.clone()), sensor: scene.sensor, ..frame() }, found)
+}
+
+type Point = [f64; 3];
+
+/// Vertices with their labels, and triangles, of a mesh as it is written.
+fn read_mesh(bytes: &[u8]) -> (Vec<(Point, u16)>, Vec<[usize; 3]>) {
+    let end = bytes.windows(11).position(|window| window == b"end_header\n").unwrap() + 11;
+    let header = std::str::from_utf8(&bytes[..end]).unwrap();
+    let count = |element: &str| {
+        let line = header.lines().find_map(|line| line.strip_prefix(element)).unwrap();
+        line.trim().parse::<usize>().unwrap()
+    };
+    let (vertices, faces) = bytes[end..].split_at(17 * count("element vertex"));
+    assert_eq!(faces.len(), 13 * count("element face"));
+    let float = |vertex: &[u8], i: usize| f64::from(f32::from_le_bytes(vertex[4 * i..4 * i + 4].try_into().unwrap()));
+    let vertex = |v: &[u8]| ([0, 1, 2].map(|i| float(v, i)), u16::from_le_bytes([v[15], v[16]]));
+    let corner = |face: &[u8], i: usize| u32::from_le_bytes(face[1 + 4 * i..5 + 4 * i].try_into().unwrap()) as usize;
+    let face = |face: &[u8]| {
+        assert_eq!(face[0], 3);
+        [0, 1, 2].map(|i| corner(face, i))
+    };
+    (vertices.chunks_exact(17).map(vertex).collect(), faces.chunks_exact(13).map(face).collect())
+}
+
+/// The area of a triangle around a normal: below 0 if it turns the other way.
+fn area_around(normal: Point, [a, b, c]: [Point; 3]) -> f64 {
+    let (p, q) = ([0, 1, 2].map(|i| b[i] - a[i]), [0, 1, 2].map(|i| c[i] - a[i]));
+    let cross = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+    (0..3).map(|i| normal[i] * cross[i]).sum::<f64>() / 2.0
+}
+
+#[test]
+fn a_mesh_of_exact_outlines_covers_the_area_of_each_plane_and_faces_the_camera() {
+    let (mut frame, mut detection) = room();
+    for mirrored in [false, true] {
+        if mirrored {
+            // The same planes seen through a camera whose picture is upside down.
+            let mut camera = frame.sensor.intrinsics.unwrap();
+            camera.fy = -camera.fy;
+            frame.sensor.intrinsics = Some(camera);
+            let Pixels::U16(pixels) = &frame.pixels else { unreachable!() };
+            let ngaf = Ngaf { theta: 40.0, min: 8, ..Ngaf::default() };
+            let mut detector = Detector::new(ngaf).unwrap().sensor(frame.sensor);
+            let view = depthplanes::DepthView::new(pixels, frame.width, frame.height).unwrap();
+            detection = detector.detect(view).unwrap().clone();
+        }
+        let mut outliner = Outliner::new(0.0).unwrap();
+        let outlines = outliner.outline(&detection, frame.sensor.intrinsics.as_ref()).unwrap();
+        let holes = |outlines: &Outlines| {
+            outlines.iter().flat_map(|outline| outline.polygons()).map(|polygon| polygon.holes().len()).sum::<usize>()
+        };
+        assert!(holes(outlines) > 10, "{} holes", holes(outlines));
+        let report = Report { outlines: Some(outlines), ..report(&frame, &detection) };
+        let (vertices, triangles) = read_mesh(&encode("mesh", "a.ply", &report));
+        let mut areas = vec![0.0; detection.planes.len()];
+        for triangle in triangles {
+            let label = usize::from(vertices[triangle[0]].1);
+            let normal = detection.planes[label - 1].metric.unwrap().plane.normal;
+            let area = area_around(normal, triangle.map(|corner| vertices[corner].0));
+            assert!(area > -1e-6, "a triangle of plane {label} has area {area}");
+            areas[label - 1] += area;
+        }
+        let mut metric = 0;
+        for (plane, area) in detection.planes.iter().zip(areas) {
+            let expected = plane.metric.and_then(|metric| metric.area_m2).unwrap_or(0.0);
+            assert!((area - expected).abs() <= 1e-3 * expected + 1e-6, "plane {}: {area} {expected}", plane.label);
+            metric += usize::from(expected > 0.0);
+        }
+        assert!(metric > 5, "{metric} metric planes");
+    }
+}
+
+#[test]
+fn a_mesh_without_a_camera_says_what_is_missing() {
+    let (mut frame, detection) = (frame(), detection());
+    frame.sensor.intrinsics = None;
+    let error = (output("mesh").writers[0].encode)(&report(&frame, &detection)).unwrap_err();
+    assert!(error.to_string().contains("--intrinsics"), "{error}");
+}
+
+#[test]
+fn outlines_stand_in_the_record_and_on_the_picture() {
+    let (frame, detection) = (frame(), detection());
+    let mut outliner = Outliner::default();
+    let outlines = outliner.outline(&detection, frame.sensor.intrinsics.as_ref()).unwrap();
+    let report = Report { outlines: Some(outlines), ..report(&frame, &detection) };
+    let json = String::from_utf8(encode("planes", "a.json", &report)).unwrap();
+    golden("planes_outlines.json", json.replace(env!("CARGO_PKG_VERSION"), "VERSION").as_bytes(), |a, b| a == b);
+    golden("overlay_outlines.png", &encode("overlay", "a.png", &report), same_pixels);
+}
+
 #[test]
 fn cloud_without_a_camera_says_what_is_missing() {
     let (mut frame, detection) = (frame(), detection());
@@ -179,7 +280,7 @@ fn all_outputs_are_written_and_nothing_else() {
     let (frame, detection) = (frame(), detection());
     let wanted: Vec<(&Output, PathBuf)> = OUTPUTS.iter().map(|output| (output, folder.join(output.file))).collect();
     outputs::write_all(&report(&frame, &detection), &wanted).unwrap();
-    assert_eq!(names_in(&folder), ["cloud.ply", "labels.png", "overlay.png", "planes.json"]);
+    assert_eq!(names_in(&folder), ["cloud.ply", "labels.png", "mesh.ply", "overlay.png", "planes.json"]);
 }
 
 #[test]
@@ -237,12 +338,15 @@ fn the_schema_page_names_every_field_and_column() {
     assert!(page.contains(&outputs::CSV_COLUMNS.join(",")));
     let (frame, detection) = (frame(), detection());
     let times = Times::default();
-    let line = outputs::json_line(&Report { times: Some(&times), ..report(&frame, &detection) });
+    let mut outliner = Outliner::default();
+    let outlines = outliner.outline(&detection, frame.sensor.intrinsics.as_ref()).ok();
+    let line = outputs::json_line(&Report { times: Some(&times), outlines, ..report(&frame, &detection) });
     let record: serde_json::Value = serde_json::from_str(&line).unwrap();
     let plane = &record["planes"][0];
     let keys = |value: &serde_json::Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
     let metric = keys(&plane["metric"]).into_iter().map(|key| format!("metric.{key}"));
-    for key in keys(&record).into_iter().chain(keys(plane)).chain(metric) {
+    let outline = keys(&plane["outline"]).into_iter().map(|key| format!("outline.{key}"));
+    for key in keys(&record).into_iter().chain(keys(plane)).chain(metric).chain(outline) {
         assert!(page.contains(&format!("`{key}`")), "{key}");
     }
 }

@@ -201,6 +201,16 @@ impl Hessian {
         let (a, b) = (m[0] / camera.fx, m[1] / camera.fy);
         Some([a, b, m[2] - a * camera.cx - b * camera.cy])
     }
+
+    /// The plane's point behind picture point (u, v), metres; `None` if the ray meets the plane at
+    /// or behind infinity.
+    #[inline]
+    pub fn point_at(&self, [u, v]: [f64; 2], camera: &Intrinsics) -> Option<[f64; 3]> {
+        let ray = camera.ray(u, v);
+        let [x, y, z] = self.normal;
+        let depth = -self.distance / (x * ray[0] + y * ray[1] + z * ray[2]);
+        (depth > 0.0 && depth.is_finite()).then(|| ray.map(|r| r * depth))
+    }
 }
 
 /// `m` with `1/z = m . r` for the ray r of [`Intrinsics::ray`].

@@ -64,6 +64,10 @@ struct Distances {
     squares: f64,
     /// Sum of the points, metres.
     point: [f64; 3],
+    /// The plane's part behind its pixels' squares, in units of `1 / (distance |fx fy|)`, m^3.
+    area: f64,
+    /// Whether some pixel's square reaches infinity on the plane.
+    reaches_infinity: bool,
     /// Whether some pixel lies at or behind infinity, which leaves the plane without metric values.
     behind_infinity: bool,
 }
@@ -299,6 +303,24 @@ impl Distances {
         self.point[0] += ray[0] * depth.q + depth.kq / camera.fx;
         self.point[1] += ray[1] * depth.q;
         self.point[2] += depth.q;
+        self.add_area(run, plane);
+    }
+
+    /// Adds the area of the plane's part behind the squares of a run of pixels.
+    ///
+    /// With the rays r of a triangle's corners, `|det(r1, r2, r3)| / (6 q1 q2 q3)` is the volume of
+    /// the pyramid from the camera over the triangle on the plane, a third of its area times the
+    /// camera's distance; the determinant is twice the triangle's area on the picture over
+    /// `|fx fy|`. A run's rectangle is two triangles that share two corners, and q is affine, so
+    /// that they add up to `pixels q(middle) / (distance |fx fy| q1 q2 q3 q4)`.
+    #[inline(always)]
+    fn add_area(&mut self, run: &LabelledRun, plane: &AffineFit) {
+        let (left, right) = (f64::from(run.u_first) - 0.5, f64::from(run.u_last) + 0.5);
+        let (top, bottom) = (f64::from(run.v) - 0.5, f64::from(run.v) + 0.5);
+        let corners = [plane.at(left, top), plane.at(right, top), plane.at(left, bottom), plane.at(right, bottom)];
+        let middle = 0.25 * corners.iter().sum::<f64>();
+        self.area += (right - left) * middle / corners.iter().product::<f64>();
+        self.reaches_infinity |= corners.iter().any(|&q| q <= 0.0);
     }
 
     /// The metric plane: a point's distance from it is z |q - q of the plane| times the plane's
@@ -312,10 +334,12 @@ impl Distances {
             Some(covariance) => (covariance, CovarianceSource::Noise),
             None => (fit.covariance(), CovarianceSource::Residuals),
         };
+        let area = self.area / (plane.distance * (camera.fx * camera.fy).abs());
         Some(MetricPlane {
             plane,
             rms_m: (self.squares / n).sqrt() * plane.distance,
             centroid_m: self.point.map(|sum| sum / n),
+            area_m2: Some(area).filter(|area| !self.reaches_infinity && area.is_finite()),
             covariance: fit::metric_covariance(fit.abc, &covariance, camera),
             covariance_from,
         })

@@ -100,6 +100,9 @@ pub struct MetricPlane {
     pub rms_m: f64,
     /// Mean of the points, metres.
     pub centroid_m: [f64; 3],
+    /// Area of the plane's part that is seen through its pixels' squares, square metres, taken on
+    /// the fitted plane; `None` if one of the squares reaches infinity on it.
+    pub area_m2: Option<f64>,
     /// Covariance of (nx, ny, nz, distance), row by row. The normal's part has rank 2, since a unit vector cannot
     /// change its length.
     pub covariance: [[f64; 4]; 4],

@@ -4,7 +4,7 @@
 //! `DepthView -> enhance -> group -> select -> fit -> Detection`.
 //!
 //! [`Detector`] runs a whole method over frame after frame; the stages stand alone as well.
-//! [`metrics`] holds label images against the truth.
+//! [`outline`] makes polygons of what was found. [`metrics`] holds label images against the truth.
 
 pub mod camera;
 pub mod describe;
@@ -19,6 +19,7 @@ pub mod map;
 pub mod methods;
 pub mod metrics;
 pub mod noise;
+pub mod outline;
 pub mod scene;
 pub mod select;
 

@@ -5,6 +5,7 @@
 mod naive;
 
 use depthplanes::methods::Method;
+use depthplanes::outline::Outliner;
 use depthplanes::{DepthView, Detector, Error, Intrinsics, Measure, Ngaf, Pixel, Planar, Sensor};
 use naive::Random;
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -142,6 +143,30 @@ fn later_frames_of_planar_allocate_nothing() {
                 check::<u8, _>(params, sensor, size, first);
                 check::<u16, _>(params, sensor, size, first);
                 check::<f32, _>(params, sensor, size, first);
+            }
+        }
+    }
+}
+
+/// An outliner's memory grows with what outlines need: frames that need no more than some before
+/// allocate nothing.
+#[test]
+fn outlines_of_frames_no_more_intricate_than_before_allocate_nothing() {
+    let (width, height) = (120, 90);
+    for sensor in sensors() {
+        for tolerance in [0.0, 1.0, 3.0] {
+            let mut random = Random(4);
+            let mut detector = Detector::new(Ngaf { theta: 3.0, min: 2, ..Ngaf::default() }).unwrap().sensor(sensor);
+            let mut outliner = Outliner::new(tolerance).unwrap();
+            let frames: Vec<Vec<u16>> = (0..12).map(|k| frame(&mut random, k, width, height)).collect();
+            for (number, frame) in frames.iter().chain(&frames).enumerate() {
+                let found = detector.detect(DepthView::new(frame, width, height).unwrap()).unwrap();
+                let camera = sensor.intrinsics.as_ref();
+                let (calls, bytes) = allocated(|| assert!(outliner.outline(found, camera).is_ok()));
+                assert!(
+                    number < frames.len() || (calls, bytes) == (0, 0),
+                    "frame {number}: {calls} calls, {bytes} bytes"
+                );
             }
         }
     }

@@ -19,14 +19,15 @@ const PARAMETERS: &[(&str, f64)] = &[("theta", 4.0), ("min", 1000.0)];
 pub(super) fn run(folder: &Path, out: &mut dyn Write) -> Outcome {
     let frame = load::scene(SCENE)?;
     let recipe = Recipe::new(METHODS[0], PARAMETERS, 1)?;
-    let (detection, _) = Runner::new(&recipe).detect(&frame, 0)?;
+    let found = Runner::new(&recipe).detect(&frame, 0)?;
     let source = format!("scene:{SCENE}");
     let report = Report {
         source: &source,
         frame: &frame,
         method: recipe.method,
         parameters: &recipe.values,
-        detection: &detection,
+        detection: &found.detection,
+        outlines: None,
         times: None,
         legend: true,
     };

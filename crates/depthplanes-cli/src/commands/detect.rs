@@ -14,7 +14,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
-    let recipe = Recipe::new(wanted.method, &wanted.parameters, wanted.threads)?;
+    let recipe = Recipe::new(wanted.method, &wanted.parameters, wanted.threads)?.outlines(wanted.outlines)?;
     let inputs = inputs::expand(&wanted.inputs)?;
     check_outputs(wanted, &inputs)?;
     let mut options = load::options(&wanted.reading)?;
@@ -56,14 +56,15 @@ impl Plan<'_> {
     fn process(&self, runner: &mut Runner<'_>, input: &Input) -> Outcome<Done> {
         let name = input.name();
         let frame = load::frame(input, &self.options)?;
-        let (detection, times) = runner.detect(&frame, self.wanted.repeat)?;
+        let found = runner.detect(&frame, self.wanted.repeat)?;
         let report = Report {
             source: &name,
             frame: &frame,
             method: self.recipe.method,
             parameters: &self.recipe.values,
-            detection: &detection,
-            times: times.as_ref(),
+            detection: &found.detection,
+            outlines: found.outlines.as_ref(),
+            times: found.times.as_ref(),
             legend: self.wanted.legend,
         };
         let written = write(self.wanted, input, &report)?;
@@ -90,7 +91,7 @@ fn readable(wanted: &Detect, report: &Report<'_>, written: &[(&Output, PathBuf)]
     let files: Vec<String> = written.iter().map(|(_, path)| path.display().to_string()).collect();
     text += &format!("wrote {}\n", files.join(", "));
     if wanted.out_dir.is_some() && !report.is_metric() {
-        text += "no point cloud, since camera or unit are not known\n";
+        text += "no point cloud and no mesh, since camera or unit are not known\n";
     }
     text
 }

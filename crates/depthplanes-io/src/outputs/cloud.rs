@@ -5,7 +5,7 @@
 
 use super::colour::palette;
 use super::{Output, OutputError, Report, Writer, shade};
-use depthplanes::{Measure, with_view};
+use depthplanes::with_view;
 
 pub(super) const OUTPUT: Output = Output {
     name: "cloud",
@@ -34,21 +34,14 @@ fn ply(report: &Report<'_>) -> Result<Vec<u8>, OutputError> {
 const POINT_BYTES: usize = 3 * 4 + 3 + 2;
 
 fn points(report: &Report<'_>) -> Result<Vec<u8>, OutputError> {
-    let sensor = report.frame.sensor;
-    if sensor.measure == Measure::Disparity {
-        let missing = "to know what the disparities mean: give --focal and --baseline of the rig";
-        return Err(OutputError::NeedsCamera { missing });
-    }
-    let camera = sensor.intrinsics.ok_or(OutputError::NeedsCamera {
-        missing: "the camera's intrinsics: give --intrinsics fx,fy,cx,cy, --camera FILE or --preset SENSOR",
-    })?;
+    let (camera, measure) = (report.metric_camera()?, report.frame.sensor.measure);
     let greys = shade::greys(report.frame)?;
     let labels = &report.detection.labels;
     let palette = palette(report.detection.planes.len());
     let width = report.frame.width;
     let mut bytes = Vec::with_capacity(labels.len() * POINT_BYTES);
     let mut add = |at: usize, value: f64| {
-        let Some(z) = sensor.measure.depth_m(value) else { return };
+        let Some(z) = measure.depth_m(value) else { return };
         let ray = camera.ray((at % width) as f64, (at / width) as f64);
         let label = labels[at];
         let shown = if label == 0 { greys[at] } else { palette[usize::from(label)] };

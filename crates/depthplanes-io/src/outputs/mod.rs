@@ -11,6 +11,9 @@ mod files;
 mod font;
 mod labels;
 mod legend;
+mod lines;
+mod mesh;
+mod outline;
 mod overlay;
 mod picture;
 mod planes;
@@ -18,7 +21,8 @@ mod record;
 mod shade;
 
 use depthplanes::methods::MethodInfo;
-use depthplanes::{Detection, Measure};
+use depthplanes::outline::Outlines;
+use depthplanes::{Detection, Intrinsics, Measure};
 use std::path::Path;
 
 use crate::Frame;
@@ -32,7 +36,7 @@ pub use planes::{CSV_COLUMNS, document as json_document, line as json_line};
 pub use record::SCHEMA;
 
 /// All outputs.
-pub const OUTPUTS: &[Output] = &[labels::OUTPUT, overlay::OUTPUT, planes::OUTPUT, cloud::OUTPUT];
+pub const OUTPUTS: &[Output] = &[labels::OUTPUT, overlay::OUTPUT, planes::OUTPUT, cloud::OUTPUT, mesh::OUTPUT];
 
 /// One row of [`OUTPUTS`].
 #[derive(Debug)]
@@ -71,6 +75,8 @@ pub struct Report<'a> {
     pub parameters: &'a [f64],
     /// What it found.
     pub detection: &'a Detection,
+    /// The planes' outlines, if they are to be in the record and on the picture.
+    pub outlines: Option<&'a Outlines>,
     /// How long it took, if that was measured.
     pub times: Option<&'a Times>,
     /// Whether pictures carry a legend.
@@ -120,6 +126,21 @@ impl Output {
 impl Report<'_> {
     /// Whether points and planes can be given in metres: the measure is metric and the camera known.
     pub fn is_metric(&self) -> bool {
-        self.frame.sensor.measure != Measure::Disparity && self.frame.sensor.intrinsics.is_some()
+        self.metric_camera().is_ok()
+    }
+
+    /// The camera, for outputs in metres.
+    ///
+    /// # Errors
+    /// [`OutputError::NeedsCamera`] unless the measure is metric and the camera known.
+    fn metric_camera(&self) -> Result<Intrinsics, OutputError> {
+        let sensor = self.frame.sensor;
+        if sensor.measure == Measure::Disparity {
+            let missing = "to know what the disparities mean: give --focal and --baseline of the rig";
+            return Err(OutputError::NeedsCamera { missing });
+        }
+        sensor.intrinsics.ok_or(OutputError::NeedsCamera {
+            missing: "the camera's intrinsics: give --intrinsics fx,fy,cx,cy, --camera FILE or --preset SENSOR",
+        })
     }
 }

@@ -1,12 +1,12 @@
-//! The picture for people: the map in muted greys, planes over it in colour, a thin outline where
-//! labels change.
+//! The picture for people: the map in muted greys, planes over it in colour, a thin dark line where
+//! labels change; with outlines these instead, in white.
 //!
 //! With a legend the picture grows to the right; without, it has exactly the map's size. The scene
 //! itself is never covered, but for the small numbers that the legend refers to.
 
 use super::colour::palette;
-use super::picture::Picture;
-use super::{Output, OutputError, Report, Writer, legend, shade};
+use super::picture::{Picture, blend};
+use super::{Output, OutputError, Report, Writer, legend, lines, shade};
 use depthplanes::Detection;
 
 pub(super) const OUTPUT: Output = Output {
@@ -26,7 +26,10 @@ fn picture(report: &Report<'_>) -> Result<Picture, OutputError> {
     let detection = report.detection;
     let pixels = shade::greys(report.frame)?;
     let mut picture = Picture { width: detection.width, height: detection.height, pixels };
-    tint_planes(&mut picture, detection);
+    tint_planes(&mut picture, detection, report.outlines.is_none());
+    if let Some(outlines) = report.outlines {
+        lines::draw_outlines(&mut picture, outlines);
+    }
     if report.legend {
         legend::number_planes(&mut picture, detection);
         picture = legend::beside(&picture, detection);
@@ -34,7 +37,7 @@ fn picture(report: &Report<'_>) -> Result<Picture, OutputError> {
     Ok(picture)
 }
 
-fn tint_planes(picture: &mut Picture, detection: &Detection) {
+fn tint_planes(picture: &mut Picture, detection: &Detection, borders: bool) {
     let palette = palette(detection.planes.len());
     for v in 0..detection.height {
         for u in 0..detection.width {
@@ -44,7 +47,7 @@ fn tint_planes(picture: &mut Picture, detection: &Detection) {
                 continue;
             }
             let tinted = blend(picture.pixels[at], palette[usize::from(label)], COLOUR_SHARE);
-            let outlined = is_border(detection, u, v);
+            let outlined = borders && is_border(detection, u, v);
             picture.pixels[at] = if outlined { blend([0; 3], tinted, OUTLINE_SHARE) } else { tinted };
         }
     }
@@ -59,9 +62,4 @@ fn is_border(detection: &Detection, u: usize, v: usize) -> bool {
     let ends_right = u + 1 < detection.width && detection.labels[at + 1] == 0;
     let ends_below = v + 1 < detection.height && detection.labels[at + detection.width] == 0;
     (u > 0 && differs(at - 1)) || (v > 0 && differs(at - detection.width)) || ends_right || ends_below
-}
-
-fn blend(below: [u8; 3], above: [u8; 3], share: f32) -> [u8; 3] {
-    let mix = |below: u8, above: u8| (f32::from(below) * (1.0 - share) + f32::from(above) * share).round() as u8;
-    [mix(below[0], above[0]), mix(below[1], above[1]), mix(below[2], above[2])]
 }

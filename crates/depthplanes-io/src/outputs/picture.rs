@@ -44,6 +44,12 @@ impl Picture {
     }
 }
 
+/// A colour over another, `share` (0 to 1) of the upper.
+pub(super) fn blend(below: [u8; 3], above: [u8; 3], share: f32) -> [u8; 3] {
+    let mix = |below: u8, above: u8| (f32::from(below) * (1.0 - share) + f32::from(above) * share).round() as u8;
+    [mix(below[0], above[0]), mix(below[1], above[1]), mix(below[2], above[2])]
+}
+
 /// A 16-bit grey PNG file, the usual home of labels and of depth in millimetres.
 pub fn grey16_png(width: usize, height: usize, values: &[u16]) -> Vec<u8> {
     let samples: Vec<u8> = values.iter().flat_map(|value| value.to_be_bytes()).collect();

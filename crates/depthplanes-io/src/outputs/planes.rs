@@ -41,6 +41,7 @@ pub const CSV_COLUMNS: &[&str] = &[
     "centroid_x_m",
     "centroid_y_m",
     "centroid_z_m",
+    "area_m2",
 ];
 
 /// The record as one line of JSON, without a line feed.
@@ -85,9 +86,11 @@ fn numbers(plane: &Plane) -> Vec<Option<f64>> {
         let ([nx, ny, nz], [x, y, z]) = (metric.plane.normal, metric.centroid_m);
         [nx, ny, nz, metric.plane.distance, metric.rms_m, x, y, z]
     });
+    let area = plane.metric.and_then(|metric| metric.area_m2);
     let mut columns: Vec<Option<f64>> = all.into_iter().map(Some).collect();
     columns.extend(fit.map_or([None; 4], |fit| fit.map(Some)));
     columns.extend(metric.map_or([None; 8], |metric| metric.map(Some)));
+    columns.push(area);
     columns
 }
 

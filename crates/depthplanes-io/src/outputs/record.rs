@@ -1,7 +1,9 @@
 //! The frame's record as it stands in JSON; docs/planes-schema.md describes each field.
 
+use super::outline::OutlineRecord;
 use super::{Report, Spread, Times};
 use depthplanes::methods::ParamKind;
+use depthplanes::outline::Outlines;
 use depthplanes::{CovarianceSource, Intrinsics, Measure, Plane};
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
@@ -27,6 +29,8 @@ pub(super) struct FrameRecord<'a> {
     labelled_pixels: usize,
     labelled_share: f64,
     warnings: &'a [String],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outline_tolerance_px: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     time_ms: Option<Map<String, Value>>,
     planes: Vec<PlaneRecord>,
@@ -57,6 +61,8 @@ struct PlaneRecord {
     centroid_px: [f64; 2],
     fit: Option<FitRecord>,
     metric: Option<MetricRecord>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outline: Option<OutlineRecord>,
 }
 
 #[derive(Serialize)]
@@ -80,6 +86,7 @@ struct MetricRecord {
     distance_m: f64,
     rms_m: f64,
     centroid_m: [f64; 3],
+    area_m2: Option<f64>,
     covariance: [[f64; 4]; 4],
     covariance_from: &'static str,
 }
@@ -104,8 +111,9 @@ impl<'a> From<&Report<'a>> for FrameRecord<'a> {
             labelled_pixels: detection.labelled_pixels(),
             labelled_share: detection.labelled_share(),
             warnings: &frame.warnings,
+            outline_tolerance_px: report.outlines.map(|outlines| outlines.tolerance_px()),
             time_ms: report.times.map(times),
-            planes: detection.planes.iter().map(PlaneRecord::from).collect(),
+            planes: detection.planes.iter().map(|plane| PlaneRecord::new(plane, report.outlines)).collect(),
         }
     }
 }
@@ -146,8 +154,8 @@ impl From<Intrinsics> for IntrinsicsRecord {
     }
 }
 
-impl From<&Plane> for PlaneRecord {
-    fn from(plane: &Plane) -> Self {
+impl PlaneRecord {
+    fn new(plane: &Plane, outlines: Option<&Outlines>) -> Self {
         let pixels = plane.bounding_box;
         PlaneRecord {
             label: plane.label,
@@ -166,12 +174,14 @@ impl From<&Plane> for PlaneRecord {
                 distance_m: metric.plane.distance,
                 rms_m: metric.rms_m,
                 centroid_m: metric.centroid_m,
+                area_m2: metric.area_m2,
                 covariance: metric.covariance,
                 covariance_from: match metric.covariance_from {
                     CovarianceSource::Noise => "noise",
                     CovarianceSource::Residuals => "residuals",
                 },
             }),
+            outline: outlines.and_then(|outlines| outlines.get(plane.label)).map(OutlineRecord::from),
         }
     }
 }

@@ -56,6 +56,7 @@ fn plane(label: u16, labels: &[u16]) -> Plane {
         plane: Hessian { normal: [0.0, 0.0, -1.0], distance: 3.0 },
         rms_m: 0.002,
         centroid_m: [0.1, -0.2, 3.0],
+        area_m2: Some(3.5),
         covariance: [[0.25; 4]; 4],
         covariance_from: depthplanes::CovarianceSource::Residuals,
     };
@@ -82,6 +83,7 @@ pub fn report<'a>(frame: &'a Frame, detection: &'a Detection) -> Report<'a> {
         method: depthplanes::methods::find("ngaf").unwrap(),
         parameters: &[1.5, 32.0, 0.0],
         detection,
+        outlines: None,
         times: None,
         legend: false,
     }

@@ -1,0 +1,94 @@
+//! The planes as a mesh: each in its colour, cut out along its outline, with its holes.
+//!
+//! Binary little-endian PLY in the optical frame (x right, y down, z forward), metres. Vertices lie
+//! on the fitted planes; faces turn counter-clockwise seen from the camera. Planes that are not
+//! known in metres, or reach infinity, are left out.
+
+use super::{Output, OutputError, Report, Writer, colour};
+use depthplanes::outline::{Outliner, Outlines, Polygon};
+use earcut::Earcut;
+
+pub(super) const OUTPUT: Output = Output {
+    name: "mesh",
+    about: "planes as coloured surfaces with holes, in metres; needs the camera",
+    file: "mesh.ply",
+    needs_camera: true,
+    writers: &[Writer { extension: "ply", encode: ply }],
+};
+
+fn ply(report: &Report<'_>) -> Result<Vec<u8>, OutputError> {
+    let camera = report.metric_camera()?;
+    let mut mesh = Mesh::default();
+    match report.outlines {
+        Some(outlines) => mesh.add_planes(outlines),
+        None => mesh.add_planes(Outliner::default().outline(report.detection, Some(&camera))?),
+    }
+    Ok(mesh.ply())
+}
+
+#[derive(Default)]
+struct Mesh {
+    /// Three floats, three colour channels, one label for each.
+    vertices: Vec<u8>,
+    vertex_count: u32,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    fn add_planes(&mut self, outlines: &Outlines) {
+        let mut earcut = Earcut::new();
+        for outline in outlines.iter().filter(|outline| outline.is_metric()) {
+            outline.polygons().for_each(|polygon| self.add(&polygon, outline.label(), &mut earcut));
+        }
+    }
+
+    /// Triangles are cut on the picture, where straight lines are straight as well.
+    fn add(&mut self, polygon: &Polygon<'_>, label: u16, earcut: &mut Earcut<f64>) {
+        let rings = || std::iter::once(polygon.outer()).chain(polygon.holes());
+        let (mut points, mut holes, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
+        for ring in rings() {
+            holes.push(points.len() as u32);
+            points.extend(ring.points_px());
+        }
+        earcut.earcut(points.iter().copied(), &holes[1..], &mut triangles);
+        let turned = turns_back(&points[..holes.get(1).map_or(points.len(), |&end| end as usize)]);
+        for triangle in triangles.as_chunks::<3>().0 {
+            let [a, b, c] = triangle.map(|corner| self.vertex_count + corner);
+            let against = turns_back(&triangle.map(|corner| points[corner as usize]));
+            self.triangles.push(if against == turned { [a, b, c] } else { [a, c, b] });
+        }
+        for point in rings().filter_map(|ring| ring.points_m()).flatten() {
+            self.vertices.extend(point.iter().flat_map(|&x| (x as f32).to_le_bytes()));
+            self.vertices.extend(colour(label));
+            self.vertices.extend(label.to_le_bytes());
+            self.vertex_count += 1;
+        }
+    }
+
+    fn ply(self) -> Vec<u8> {
+        let mut bytes = format!(
+            "ply\nformat binary_little_endian 1.0\ncomment depthplanes: metres, x right, y down, z forward\n\
+             element vertex {}\n\
+             property float x\nproperty float y\nproperty float z\n\
+             property uchar red\nproperty uchar green\nproperty uchar blue\n\
+             property ushort label\n\
+             element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+            self.vertex_count,
+            self.triangles.len()
+        )
+        .into_bytes();
+        bytes.extend(self.vertices);
+        for triangle in self.triangles {
+            bytes.push(3);
+            bytes.extend(triangle.iter().flat_map(|corner| corner.to_le_bytes()));
+        }
+        bytes
+    }
+}
+
+/// Whether a ring on the picture has a negative area, u to the right and v down.
+fn turns_back(ring: &[[f64; 2]]) -> bool {
+    let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - b[0] * a[1];
+    let (Some(&first), Some(&last)) = (ring.first(), ring.last()) else { return false };
+    ring.windows(2).map(|pair| cross(pair[0], pair[1])).sum::<f64>() + cross(last, first) < 0.0
+}
