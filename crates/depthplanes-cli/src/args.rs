@@ -47,6 +47,8 @@ pub(crate) struct Detect {
     pub(crate) legend: bool,
     /// Tolerance of the planes' outlines, pixels, if they are wanted.
     pub(crate) outlines: Option<f64>,
+    /// Whether surfaces that bend are wanted as well.
+    pub(crate) curved: bool,
     pub(crate) json: bool,
     pub(crate) rows: usize,
     pub(crate) repeat: usize,
@@ -203,6 +205,11 @@ fn output_flags() -> Vec<Arg> {
     all.extend([
         flags::path("out-dir", "DIR").help(out_dir).help_heading("Output"),
         flags::switch("legend", "Put a legend beside the overlay and numbers on its planes").help_heading("Output"),
+        flags::switch(
+            "curved",
+            "Report surfaces that bend as well: in the summary, in the JSON record and hatched on the overlay",
+        )
+        .help_heading("Output"),
         outlines_flag().help_heading("Output"),
         flags::switch("json", "Print the record as JSON; one line for each of several inputs").help_heading("Output"),
         flags::count("rows", "N").default_value("20").help("Planes in the printed table").help_heading("Output"),
@@ -296,6 +303,7 @@ fn detect(matches: &ArgMatches) -> Detect {
         out_dir: path(matches, "out-dir"),
         legend: matches.get_flag("legend"),
         outlines: matches.get_one("outlines").copied(),
+        curved: matches.get_flag("curved"),
         json: matches.get_flag("json"),
         rows: count("rows"),
         repeat: matches.get_one("repeat").copied().unwrap_or(0),

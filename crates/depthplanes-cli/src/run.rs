@@ -1,7 +1,7 @@
 //! One map through the pipeline: which method with which parameters, and how long it takes.
 
 use crate::failure::{Failure, Outcome};
-use depthplanes::methods::MethodInfo;
+use depthplanes::methods::{METHODS, MethodInfo};
 use depthplanes::outline::{Outliner, Outlines};
 use depthplanes::{AnyView, Detection, Detector, Sensor};
 use depthplanes_io::Frame;
@@ -18,6 +18,7 @@ pub(crate) struct Recipe {
     threads: usize,
     /// Tolerance of the planes' outlines, pixels, if they are wanted.
     outlines: Option<f64>,
+    curved: bool,
 }
 
 /// What was found in a frame.
@@ -39,7 +40,7 @@ impl Recipe {
             values[at.ok_or_else(|| lacks(method, name))?] = value;
         }
         method.with(given)?;
-        Ok(Recipe { method, values, threads, outlines: None })
+        Ok(Recipe { method, values, threads, outlines: None, curved: false })
     }
 
     /// With the planes' outlines, simplified to within so many pixels.
@@ -52,6 +53,25 @@ impl Recipe {
         Ok(self)
     }
 
+    /// With surfaces that bend.
+    ///
+    /// # Errors
+    /// A method that does not tell them.
+    pub(crate) fn curved(mut self, yes: bool) -> Outcome<Self> {
+        self.curved = yes;
+        if yes && !self.method.tells_curved {
+            let others: Vec<&str> =
+                METHODS.iter().filter(|method| method.tells_curved).map(|method| method.name).collect();
+            let message = format!(
+                "method `{}` does not tell surfaces that bend; --method {} does",
+                self.method.name,
+                others.join(", ")
+            );
+            return Err(Failure::request(message));
+        }
+        Ok(self)
+    }
+
     fn outliner(&self) -> Outcome<Option<Outliner>> {
         Ok(self.outlines.map(Outliner::new).transpose()?)
     }
@@ -59,7 +79,7 @@ impl Recipe {
     /// A detector of it for a sensor.
     pub(crate) fn detector(&self, sensor: Sensor) -> Detector {
         let method = (self.method.build)(&self.values).expect("the parameters were checked");
-        Detector::from_method(method).threads(self.threads).sensor(sensor)
+        Detector::from_method(method).threads(self.threads).curved(self.curved).sensor(sensor)
     }
 }
 

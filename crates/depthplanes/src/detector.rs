@@ -29,6 +29,7 @@ pub struct Detector {
     method: Box<dyn Method>,
     sensor: Sensor,
     threads: usize,
+    curved: bool,
     detection: Detection,
 }
 
@@ -46,7 +47,7 @@ impl Detector {
 
     /// A detector of a method that was built by name ([`crate::methods::find`]).
     pub fn from_method(method: Box<dyn Method>) -> Self {
-        Detector { method, sensor: Sensor::default(), threads: 1, detection: Detection::default() }
+        Detector { method, sensor: Sensor::default(), threads: 1, curved: false, detection: Detection::default() }
     }
 
     /// States what the map's numbers mean and which camera saw them; needed for metric planes.
@@ -58,6 +59,13 @@ impl Detector {
     /// Threads for large maps, 1 and up (0 counts as 1). The answer is the same for any number.
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = threads.max(1);
+        self
+    }
+
+    /// Whether to report surfaces that bend as well ([`Detection::curved`]), which costs time. `planar` tells them from
+    /// planes, `ngaf` does not.
+    pub fn curved(mut self, yes: bool) -> Self {
+        self.curved = yes;
         self
     }
 
@@ -78,7 +86,7 @@ impl Detector {
         map: impl Into<AnyView<'m>>,
         observer: &mut dyn FnMut(&'static str),
     ) -> Result<&Detection> {
-        let mut job = Job { sensor: self.sensor, threads: self.threads, observer };
+        let mut job = Job { sensor: self.sensor, threads: self.threads, curved: self.curved, observer };
         self.method.run(map.into(), &mut job, &mut self.detection)?;
         Ok(&self.detection)
     }
@@ -105,7 +113,7 @@ impl Detector {
         if at[0] >= width || at[1] >= height {
             return Err(Error::Pixel { at, width, height });
         }
-        let mut job = Job { sensor: self.sensor, threads: self.threads, observer: &mut |_| () };
+        let mut job = Job { sensor: self.sensor, threads: self.threads, curved: false, observer: &mut |_| () };
         self.method.explain(map, &mut job, at)
     }
 }

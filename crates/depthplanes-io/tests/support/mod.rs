@@ -44,7 +44,15 @@ pub fn detection() -> Detection {
     };
     let labels: Vec<u16> = (0..WIDTH * HEIGHT).map(label).collect();
     let planes = (1..=3).map(|label| plane(label, &labels)).collect();
-    Detection { width: WIDTH, height: HEIGHT, labels, planes, valid_pixels: WIDTH * HEIGHT - 28, filled_pixels: 0 }
+    Detection {
+        width: WIDTH,
+        height: HEIGHT,
+        labels,
+        planes,
+        valid_pixels: WIDTH * HEIGHT - 28,
+        filled_pixels: 0,
+        curved: None,
+    }
 }
 
 fn plane(label: u16, labels: &[u16]) -> Plane {

@@ -27,6 +27,8 @@ pub struct MethodInfo {
     pub about: &'static str,
     /// Its stages in order, as told to the observer of [`crate::Detector::detect_observed`].
     pub stages: &'static [&'static str],
+    /// Whether it tells surfaces that bend from planes and can report them.
+    pub tells_curved: bool,
     /// Its parameters, in the order of `build`'s values.
     pub params: &'static [Param],
     /// Makes the method from one value for each parameter, in order; [`Error::Parameter`] for one
@@ -119,6 +121,8 @@ pub struct Job<'a> {
     pub sensor: Sensor,
     /// Threads to use, 1 and up; the answer does not depend on it.
     pub threads: usize,
+    /// Whether surfaces that bend are wanted as well, of methods that tell them.
+    pub curved: bool,
     /// Told the name of each stage as it ends.
     pub observer: &'a mut dyn FnMut(&'static str),
 }

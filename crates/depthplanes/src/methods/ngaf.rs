@@ -21,6 +21,7 @@ pub(super) static INFO: MethodInfo = MethodInfo {
     name: "ngaf",
     about: "Groups neighbours whose values differ by at most theta; a group of more than `min` pixels is a plane (Hoa, Minh, Dung 2017).",
     stages: &["enhance", "group", "select", "fit", "label"],
+    tells_curved: false,
     params: PARAMS,
     build: |values| {
         INFO.check(values)?; // before any of them becomes a whole number

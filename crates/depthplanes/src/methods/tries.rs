@@ -37,7 +37,8 @@ impl Tries<'_> {
         }
         let mut method = (self.info.build)(&values).ok()?;
         let mut found = Detection::default();
-        method.run(self.map, &mut Job { sensor: self.sensor, threads: 1, observer: &mut |_| () }, &mut found).ok()?;
+        let mut job = Job { sensor: self.sensor, threads: 1, curved: false, observer: &mut |_| () };
+        method.run(self.map, &mut job, &mut found).ok()?;
         let label = found.labels[self.at[1] * found.width + self.at[0]];
         let plane = found.planes.get(usize::from(label.checked_sub(1)?))?;
         Some(Suggestion {

@@ -257,12 +257,17 @@ impl Facets {
     }
 }
 
+/// Whether there is a step between two regions where they touch.
+pub(super) fn are_apart(all: &[Region], noise: &NoiseModel, pair: &Pair) -> bool {
+    let [u, v] = pair.middle();
+    let [a, b] = pair.ids.map(|id| all[id as usize].at(u, v));
+    (a - b).powi(2) > STEP * STEP * noise.variance((a + b) / 2.0)
+}
+
 impl Scene<'_> {
     /// Whether there is a step between two regions where they touch.
     fn are_apart(&self, pair: &Pair) -> bool {
-        let [u, v] = pair.middle();
-        let [a, b] = pair.ids.map(|id| self.all[id as usize].at(u, v));
-        (a - b).powi(2) > STEP * STEP * self.noise.variance((a + b) / 2.0)
+        are_apart(self.all, self.noise, pair)
     }
 
     /// Whether two planes part so fast that no quadratic follows both.

@@ -26,12 +26,7 @@ const FACTORS: [f64; 6] = [1.0, 1.2, 1.5, 2.0, 3.0, 4.0];
 /// Largest confidence that is suggested: further off, a pixel is on something else.
 const MOST_CONFIDENCE: f64 = 12.0;
 
-pub(super) fn explain(
-    runner: &mut Runner,
-    map: AnyView<'_>,
-    job: &mut Job<'_>,
-    at: [usize; 2],
-) -> Result<Explanation> {
+pub(super) fn explain(runner: &mut Runner, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) -> Result<Explanation> {
     let (mut seen, mut out) = (Seen::new(at, job.sensor), Detection::default());
     let mut watch = |moment: Moment, run: &Runner, noise: &NoiseModel| seen.look(moment, run, noise);
     with_view!(map, map => runner.planar(map, job, &mut out, &mut watch))?;
@@ -262,7 +257,7 @@ impl Seen {
             None => finding,
         };
         self.findings.push(finding);
-        let planes = Planes { regions: &run.regions.all, noise, confidence: run.params.confidence };
+        let planes = Planes { regions: &run.regions.all, noise, confidence: run.params.confidence, curved: false };
         let share = run.explainer.share(&run.field, grid, &planes, &run.facets.boxes, id);
         let is_explained = run.explainer.is_explained[id as usize];
         if let Some([share, most]) = share {
@@ -376,7 +371,11 @@ impl Seen {
                 vec![self.confidences(times * confidence), self.noises(times)]
             }
             Verdict::Uneven { .. } | Verdict::Alone | Verdict::Sparse { .. } => {
-                vec![smaller_min(run.params.min as usize / 2).take(3).collect(), self.confidences(confidence), self.noises(1.2)]
+                vec![
+                    smaller_min(run.params.min as usize / 2).take(3).collect(),
+                    self.confidences(confidence),
+                    self.noises(1.2),
+                ]
             }
             _ => nothing(),
         }

@@ -5,6 +5,7 @@
 //! where it is exact: inverse depth or disparity, `q = a u + b v + c`.
 
 mod assign;
+mod bent;
 mod curved;
 mod explain;
 mod explained;
@@ -26,6 +27,7 @@ use crate::map::{AnyView, DepthView, Pixel};
 use crate::noise::{NoiseModel, SensorNoise, Space};
 use crate::select::Selection;
 use crate::with_view;
+use bent::Bent;
 use curved::Facets;
 use explained::Explainer;
 use field::Field;
@@ -39,6 +41,7 @@ pub(super) static INFO: MethodInfo = MethodInfo {
     name: "planar",
     about: "Finds true planes: regions that one plane explains to within the sensor's noise, in inverse depth or disparity.",
     stages: &["tiles", "grow", "judge", "assign", "group", "select", "fit", "label"],
+    tells_curved: true,
     params: PARAMS,
     build: |values| {
         INFO.check(values)?;
@@ -158,6 +161,7 @@ struct Runner {
     facets: Facets,
     explainer: Explainer,
     image: Vec<u16>,
+    bent: Bent,
     grouper: Grouper,
     selection: Selection,
     describer: Describer,
@@ -207,7 +211,7 @@ impl Runner {
         job.done("grow");
         self.judge(&noise, watch);
         job.done("judge");
-        self.assign(&noise);
+        self.assign(&noise, false);
         watch(Moment::Assigned, self, &noise);
         job.done("assign");
         let Runner { params, field, image, grouper, selection, describer, .. } = self;
@@ -225,6 +229,7 @@ impl Runner {
         selection.paint(groups, &mut out.labels);
         (out.width, out.height) = (map.width(), map.height());
         (out.valid_pixels, out.filled_pixels) = (field.valid_pixels, 0);
+        out.curved = if job.curved { Some(self.find_bent(&map, job, &noise, out.curved.take())?) } else { None };
         job.done("label");
         Ok(())
     }
@@ -255,7 +260,7 @@ impl Runner {
     fn judge(&mut self, noise: &NoiseModel, watch: &mut Watch<'_>) {
         let Runner { params, field, pyramid, regions, merger, facets, explainer, .. } = self;
         facets.mark(pyramid, regions, &merger.pairs, noise);
-        let planes = Planes { regions: &regions.all, noise, confidence: params.confidence };
+        let planes = Planes { regions: &regions.all, noise, confidence: params.confidence, curved: false };
         explainer.find(field, &pyramid.grids[0], &planes, &merger.pairs, &facets.boxes);
         watch(Moment::Judged, self, noise);
         let Runner { pyramid, regions, merger, explainer, .. } = self;
@@ -264,13 +269,13 @@ impl Runner {
         merger.drop(&mut pyramid.grids[0], regions, is_explained);
     }
 
-    /// The region of every pixel.
-    fn assign(&mut self, noise: &NoiseModel) {
+    /// The region of every pixel: its plane, or its curved region.
+    fn assign(&mut self, noise: &NoiseModel, curved: bool) {
         let Runner { params, field, pyramid, regions, image, .. } = self;
         image.resize(field.q.len(), 0);
         pyramid.hand_up();
         let [tiles, blocks, ..] = &pyramid.grids;
-        let planes = Planes { regions: &regions.all, noise, confidence: params.confidence };
+        let planes = Planes { regions: &regions.all, noise, confidence: params.confidence, curved };
         assign::assign(field, [tiles, blocks], &planes, image);
     }
 }
