@@ -95,6 +95,11 @@ fn words(limit: Limit) -> (&'static str, f64) {
 fn readable(name: &str, why: &Explanation) -> String {
     let [u, v] = why.at;
     let mut text = format!("{name}: column {u}, row {v}, by {}\n", why.method);
+    let has_noise =
+        why.findings.iter().flat_map(|finding| &finding.quantities).any(|of| of.unit == "standard deviations");
+    if has_noise {
+        text += "(sd: standard deviations of the noise expected there; ! refuses)\n";
+    }
     let width = why.findings.iter().map(|finding| finding.stage.len()).max().unwrap_or(0);
     let mut last = "";
     for finding in &why.findings {
@@ -119,15 +124,14 @@ fn sentence(finding: &Finding) -> String {
 }
 
 fn shown(quantity: &Quantity) -> String {
-    let value = match quantity.unit {
-        // A noise to four digits would say more than is known.
-        "standard deviations" => format!("{:.1}", quantity.value),
-        _ => significant(quantity.value),
+    let (value, unit) = match quantity.unit {
+        // Four digits of a noise would say more than is known.
+        "standard deviations" if quantity.value < 1.0 => (format!("{:.2}", quantity.value), " sd"),
+        "standard deviations" => (format!("{:.1}", quantity.value), " sd"),
+        _ => (significant(quantity.value), quantity.unit),
     };
-    let unit = match quantity.unit {
-        "" => String::new(),
-        unit => format!(" {unit}"),
-    };
+    let space = if unit.is_empty() || unit.starts_with(' ') { "" } else { " " };
+    let unit = format!("{space}{unit}");
     let limit = quantity.limit.map(|limit| {
         let (kind, bound) = words(limit);
         format!(" ({kind} {})", significant(bound))
