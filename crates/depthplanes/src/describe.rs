@@ -6,7 +6,7 @@
 
 use crate::camera::{Intrinsics, Measure, Sensor};
 use crate::detection::{CovarianceSource, MapFit, MetricPlane, PixelBox, Plane, share};
-use crate::fit::{self, AffineFit, Moments, RunSums};
+use crate::fit::{self, AffineFit, LANES, Lanes, Moments, ValueSums, in_lanes};
 use crate::group::vectorised;
 use crate::map::{DepthView, Pixel};
 use crate::noise::{NoiseModel, Patch};
@@ -28,6 +28,8 @@ pub struct Tally {
     /// Least-squares plane in inverse depth, 1/m, where that is known.
     inverse_depth: Option<AffineFit>,
     origin: [f64; 2],
+    /// Where its pixels lie about `origin`.
+    places: Moments,
     value: Quantity,
     inverse: Quantity,
 }
@@ -36,7 +38,7 @@ pub struct Tally {
 #[derive(Clone, Copy, Debug, Default)]
 struct Quantity {
     first: f64,
-    sums: Moments,
+    sums: ValueSums,
 }
 
 /// Describes planes; reuses its memory from map to map.
@@ -61,7 +63,7 @@ pub struct Seen<'a> {
 #[derive(Clone, Copy, Debug, Default)]
 struct Distances {
     /// Sum of (z (q - q of the plane))^2.
-    squares: f64,
+    squares: Lanes,
     /// Sum of the points, metres.
     point: [f64; 3],
     /// The plane's part behind its pixels' squares, in units of `1 / (distance |fx fy|)`, m^3.
@@ -72,6 +74,18 @@ struct Distances {
     behind_infinity: bool,
 }
 
+/// 1 / value, to within some units of the last place. Single precision and one step of Newton's method take a third of
+/// the time of a division; only whole numbers are sure to stay within its range.
+#[inline(always)]
+fn reciprocal<T: Pixel>(value: T) -> f64 {
+    let wide: f64 = value.into();
+    if !T::IS_INTEGER {
+        return 1.0 / wide;
+    }
+    let near = f64::from(1.0 / value.to_f32());
+    near * (2.0 - wide * near)
+}
+
 impl Describer {
     /// First pass. Labels are 1, 2, .. in `runs`, and none is left out.
     pub fn tally<T: Pixel>(&mut self, map: &DepthView<'_, T>, runs: &[LabelledRun], margin: u32, sensor: &Sensor) {
@@ -80,7 +94,10 @@ impl Describer {
         let inner = Margin { margin, width: map.width() as u32, height: map.height() as u32 };
         // Planes of depth maps are affine in inverse depth; all others in the map's own values.
         let inverse = match (sensor.intrinsics, sensor.measure) {
-            (Some(_), Measure::Depth { metres }) => Some(move |value: T| 1.0 / (metres * value.into())),
+            (Some(_), Measure::Depth { metres }) => {
+                let per_metre = 1.0 / metres;
+                Some(move |value: T| per_metre * reciprocal(value))
+            }
             _ => None,
         };
         vectorised(
@@ -112,10 +129,10 @@ impl Describer {
             tally.inner_pixels += inner.pixels(run);
             tally.bounding_box.include(run);
             let (u, v) = (f64::from(run.u_first) - tally.origin[0], f64::from(run.v) - tally.origin[1]);
-            tally.value.sums.add_run(u, v, &T::run_sums(values, T::from_f64(tally.value.first)));
+            tally.places.add_places(u, v, values.len());
+            tally.value.add(u, v, values, |value| value.into());
             if let Some(inverse) = inverse {
-                let first = tally.inverse.first;
-                tally.inverse.sums.add_run(u, v, &RunSums::of(values, |_, value| inverse(value) - first));
+                tally.inverse.add(u, v, values, inverse);
             }
         }
     }
@@ -145,10 +162,13 @@ impl Describer {
         self.distances.clear();
         match (sensor.intrinsics, sensor.measure) {
             (Some(camera), Measure::Depth { metres }) => {
-                self.measure_distances(map, runs, &camera, |value| metres * value.into());
+                self.measure_distances(map, runs, None, |value| metres * value.into());
+                for (distances, tally) in self.distances.iter_mut().zip(&self.tallies) {
+                    distances.point = tally.points(metres, &camera);
+                }
             }
             (Some(camera), Measure::InverseDepth { slope, offset }) => {
-                self.measure_distances(map, runs, &camera, |value| (slope * value.into() + offset).recip());
+                self.measure_distances(map, runs, Some(&camera), |value| (slope * value.into() + offset).recip());
             }
             _ => (),
         }
@@ -168,11 +188,12 @@ impl Describer {
         }));
     }
 
+    /// Sums what the records need of every pixel's depth; its point only with a camera.
     fn measure_distances<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
         runs: &[LabelledRun],
-        camera: &Intrinsics,
+        camera: Option<&Intrinsics>,
         depth_m: impl Fn(T) -> f64,
     ) {
         self.distances.reserve(self.tallies.capacity());
@@ -202,6 +223,7 @@ impl Tally {
             fit: None,
             inverse_depth: None,
             origin: [0.0; 2],
+            places: Moments::default(),
             value: Quantity::default(),
             inverse: Quantity::default(),
         }
@@ -215,11 +237,11 @@ impl Tally {
 
     fn finish(&mut self, sensor: &Sensor) {
         let [u, v] = self.origin;
-        let sums = &self.value.sums;
-        self.centroid = [u + sums.u / sums.n, v + sums.v / sums.n];
-        self.fit = self.value.fit(self.origin);
+        let places = &self.places;
+        self.centroid = [u + places.u / places.n, v + places.v / places.n];
+        self.fit = self.value.fit(places, self.origin);
         self.inverse_depth = match sensor.measure {
-            Measure::Depth { .. } => self.inverse.fit(self.origin),
+            Measure::Depth { .. } => self.inverse.fit(places, self.origin),
             Measure::InverseDepth { slope, offset } => self.fit.map(|fit| fit.scaled(slope, offset)),
             Measure::Disparity => None,
         };
@@ -227,6 +249,15 @@ impl Tally {
 }
 
 impl Tally {
+    /// Sum of its points, metres, if its values are depths.
+    fn points(&self, metres: f64, camera: &Intrinsics) -> [f64; 3] {
+        let (first, sums) = (self.value.first, self.places.with(&self.value.sums));
+        let ray = camera.ray(self.origin[0], self.origin[1]);
+        let z = sums.q + first * sums.n;
+        let (uz, vz) = (sums.uq + first * sums.u, sums.vq + first * sums.v); // about the origin
+        [ray[0] * z + uz / camera.fx, ray[1] * z + vz / camera.fy, z].map(|sum| sum * metres)
+    }
+
     /// Covariance of the coefficients in inverse depth by the noise; larger if the residuals are, by more than three
     /// standard deviations of their chi-squared. `None` if the noise is 0.
     fn covariance_by(&self, noise: &NoiseModel, sensor: &Sensor) -> Option<[[f64; 3]; 3]> {
@@ -250,8 +281,14 @@ impl Tally {
 }
 
 impl Quantity {
-    fn fit(&self, [u, v]: [f64; 2]) -> Option<AffineFit> {
-        self.sums.fit().map(|fit| fit.moved([u, v, self.first]))
+    #[inline(always)]
+    fn add<T: Copy>(&mut self, u: f64, v: f64, values: &[T], quantity: impl Fn(T) -> f64) {
+        let first = self.first;
+        self.sums.add(u, v, values, |value| quantity(value) - first);
+    }
+
+    fn fit(&self, places: &Moments, [u, v]: [f64; 2]) -> Option<AffineFit> {
+        places.with(&self.sums).fit().map(|fit| fit.moved([u, v, self.first]))
     }
 }
 
@@ -289,20 +326,39 @@ impl Distances {
         run: &LabelledRun,
         values: &[T],
         plane: &AffineFit,
-        camera: &Intrinsics,
+        camera: Option<&Intrinsics>,
         depth_m: impl Fn(T) -> f64,
     ) {
         let (u, v) = (f64::from(run.u_first), f64::from(run.v));
         let (first, slope) = (plane.at(u, v), plane.abc[0]);
-        let depth = RunSums::of(values, |_, value| depth_m(value));
-        let relative = RunSums::of(values, |k, value| 1.0 - depth_m(value) * (first + slope * k)); // z (q - q of the plane)
+        in_lanes(
+            values,
+            |k, value| 1.0 - depth_m(value) * (first + slope * k), // z (q - q of the plane)
+            #[inline(always)]
+            |_, relative| (0..LANES).for_each(|lane| self.squares[lane] += relative[lane] * relative[lane]),
+        );
         let is_behind = |z: f64| !(z > 0.0 && z < f64::INFINITY);
-        self.behind_infinity |= values.iter().fold(false, |any, &value| any | is_behind(depth_m(value)));
-        self.squares += relative.qq;
-        let ray = camera.ray(u, v);
-        self.point[0] += ray[0] * depth.q + depth.kq / camera.fx;
-        self.point[1] += ray[1] * depth.q;
-        self.point[2] += depth.q;
+        if !T::IS_INTEGER || camera.is_some() {
+            self.behind_infinity |= values.iter().fold(false, |any, &value| any | is_behind(depth_m(value)));
+        }
+        if let Some(camera) = camera {
+            let mut sums = [[0.0; LANES]; 2];
+            in_lanes(
+                values,
+                |_, value| depth_m(value),
+                #[inline(always)]
+                |k, depth| {
+                    for lane in 0..LANES {
+                        sums[0][lane] += depth[lane];
+                        sums[1][lane] += k[lane] * depth[lane];
+                    }
+                },
+            );
+            let ([depth, by_k], ray) = (sums.map(|lanes| lanes.iter().sum::<f64>()), camera.ray(u, v));
+            self.point[0] += ray[0] * depth + by_k / camera.fx;
+            self.point[1] += ray[1] * depth;
+            self.point[2] += depth;
+        }
         self.add_area(run, plane);
     }
 
@@ -337,7 +393,7 @@ impl Distances {
         let area = self.area / (plane.distance * (camera.fx * camera.fy).abs());
         Some(MetricPlane {
             plane,
-            rms_m: (self.squares / n).sqrt() * plane.distance,
+            rms_m: (self.squares.iter().sum::<f64>() / n).sqrt() * plane.distance,
             centroid_m: self.point.map(|sum| sum / n),
             area_m2: Some(area).filter(|area| !self.reaches_infinity && area.is_finite()),
             covariance: fit::metric_covariance(fit.abc, &covariance, camera),

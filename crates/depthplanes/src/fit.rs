@@ -48,24 +48,25 @@ impl Moments {
         self.qq += q * q;
     }
 
-    /// Adds a run of pixels of one row: columns `u, u + 1, ..`, row `v`, and the sums over k = 0, 1 ..
-    /// of their values q_k.
+    /// Adds where the pixels of a run lie: columns `u, u + 1, ..`, row `v`; not their values.
     #[inline(always)]
-    pub fn add_run(&mut self, u: f64, v: f64, values: &RunSums) {
-        let n = values.n;
+    pub fn add_places(&mut self, u: f64, v: f64, count: usize) {
+        let n = count as f64;
         let sum_k = n * (n - 1.0) / 2.0;
         let sum_kk = sum_k * (2.0 * n - 1.0) / 3.0;
         let sum_u = n * u + sum_k;
         self.n += n;
         self.u += sum_u;
         self.v += n * v;
-        self.q += values.q;
         self.uu += u * (n * u + 2.0 * sum_k) + sum_kk;
         self.uv += v * sum_u;
         self.vv += n * v * v;
-        self.uq += u * values.q + values.kq;
-        self.vq += v * values.q;
-        self.qq += values.qq;
+    }
+
+    /// The same points with the values that were summed beside them.
+    pub fn with(mut self, values: &ValueSums) -> Self {
+        [self.q, self.uq, self.vq, self.qq] = values.lanes.map(|lanes| lanes.iter().sum());
+        self
     }
 
     /// Adds the sums of other points about the same origin.
@@ -129,103 +130,83 @@ impl Moments {
     }
 }
 
-/// Sums over one run's values, k counting from 0 at its first pixel.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RunSums {
-    /// Pixels.
-    pub n: f64,
-    /// Sum of q_k.
-    pub q: f64,
-    /// Sum of k q_k.
-    pub kq: f64,
-    /// Sum of q_k q_k.
-    pub qq: f64,
+/// Values that are summed side by side; always as many, so that every processor rounds alike.
+pub(crate) const LANES: usize = 8;
+/// One number for each of them.
+pub(crate) type Lanes = [f64; LANES];
+
+/// Sums over the values of points whose places are summed elsewhere ([`Moments::add_places`]).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ValueSums {
+    /// Of q, u q, v q, q q.
+    lanes: [Lanes; 4],
 }
 
-impl RunSums {
-    /// Sums of a run's values, each turned into q by its number k and itself.
+impl ValueSums {
+    /// Adds a run of pixels of one row: columns `u, u + 1, ..`, row `v`, each value turned into q.
     #[inline(always)]
-    pub fn of<T: Copy>(values: &[T], q: impl Fn(f64, T) -> f64) -> Self {
-        let mut sums = RunSums::default();
-        if values.len() < LANES {
-            values.iter().for_each(|&value| sums.push(q(sums.n, value)));
-            return sums;
+    pub fn add<T: Copy>(&mut self, u: f64, v: f64, values: &[T], q: impl Fn(T) -> f64) {
+        let [mut sum, mut sum_u, mut squares] = [[0.0; LANES]; 3];
+        in_lanes(
+            values,
+            |_, value| q(value),
+            #[inline(always)]
+            |k, q| {
+                for lane in 0..LANES {
+                    sum[lane] += q[lane];
+                    sum_u[lane] += (u + k[lane]) * q[lane];
+                    squares[lane] += q[lane] * q[lane];
+                }
+            },
+        );
+        let [of_q, of_uq, of_vq, of_qq] = &mut self.lanes;
+        for lane in 0..LANES {
+            of_q[lane] += sum[lane];
+            of_uq[lane] += sum_u[lane];
+            of_vq[lane] += v * sum[lane];
+            of_qq[lane] += squares[lane];
         }
-        let mut block = [0.0; BLOCK];
-        for values in values.chunks(BLOCK) {
-            for (k, (block, &value)) in block.iter_mut().zip(values).enumerate() {
-                *block = q(sums.n + NUMBERS[k], value);
-            }
-            sums.append(&block[..values.len()]);
-        }
-        sums
-    }
-
-    /// Sums of whole numbers, less `first` each. Exact.
-    #[inline(always)]
-    pub(crate) fn of_whole<T: Copy + Into<u32>>(values: &[T], first: u32) -> Self {
-        let (mut sum, mut sum_k, mut squares) = (0u64, 0u64, 0u64);
-        for (k, &value) in (0u32..).zip(values) {
-            let value: u32 = value.into(); // k and the value have 16 bits
-            sum += u64::from(value);
-            sum_k += u64::from(k * value);
-            squares += u64::from(value * value);
-        }
-        let (n, first) = (values.len() as i64, i64::from(first));
-        let (sum, sum_k, squares) = (sum as i64, sum_k as i64, squares as i64);
-        RunSums {
-            n: n as f64,
-            q: (sum - n * first) as f64,
-            kq: (sum_k - n * (n - 1) / 2 * first) as f64,
-            qq: (squares - 2 * first * sum + n * first * first) as f64,
-        }
-    }
-
-    /// Adds the values that follow those already summed.
-    #[inline(always)]
-    fn append(&mut self, q: &[f64]) {
-        let mut lanes = [[0.0; LANES]; 3];
-        let blocks = q.chunks_exact(LANES);
-        let rest = blocks.remainder();
-        for (q, k) in blocks.zip(NUMBERS.chunks_exact(LANES)) {
-            for lane in 0..LANES {
-                lanes[0][lane] += q[lane];
-                lanes[1][lane] += k[lane] * q[lane];
-                lanes[2][lane] += q[lane] * q[lane];
-            }
-        }
-        let [sum, sum_k, squares] = lanes.map(|lanes| lanes.iter().sum::<f64>());
-        self.kq += self.n * sum + sum_k;
-        self.q += sum;
-        self.qq += squares;
-        self.n += (q.len() - rest.len()) as f64;
-        rest.iter().for_each(|&q| self.push(q));
-    }
-
-    /// Adds the value that follows those already summed.
-    #[inline(always)]
-    fn push(&mut self, q: f64) {
-        self.q += q;
-        self.kq += self.n * q;
-        self.qq += q * q;
-        self.n += 1.0;
     }
 }
 
-/// Lanes that sums are spread over, always the same, so that every processor rounds alike.
-const LANES: usize = 8;
-/// Values that are turned into q before they are summed.
-const BLOCK: usize = 64;
-/// 0, 1, .. 63.
-const NUMBERS: [f64; BLOCK] = {
-    let mut numbers = [0.0; BLOCK];
-    let mut k = 0;
-    while k < BLOCK {
-        numbers[k] = k as f64;
-        k += 1;
+/// Turns a run's values into q by their numbers k and themselves, and calls `visit` with the numbers and q of [`LANES`]
+/// at a time, 0 for lanes without a value.
+#[inline(always)]
+pub(crate) fn in_lanes<T: Copy>(values: &[T], q: impl Fn(f64, T) -> f64, mut visit: impl FnMut(&Lanes, &Lanes)) {
+    let (groups, rest) = values.as_chunks::<LANES>();
+    let mut k = NUMBERS;
+    for group in groups {
+        let mut lanes = [0.0; LANES];
+        for lane in 0..LANES {
+            lanes[lane] = q(k[lane], group[lane]);
+        }
+        visit(&k, &lanes);
+        for lane in 0..LANES {
+            k[lane] += LANES as f64;
+        }
     }
-    numbers
-};
+    if rest.is_empty() {
+        return;
+    }
+    let mut lanes = [0.0; LANES];
+    if let Some(last) = values.last_chunk::<LANES>() {
+        // The rest is the end of the last few values, whose first ones have been visited.
+        let (first, done) = ((values.len() - LANES) as f64, (values.len() - rest.len()) as f64);
+        for lane in 0..LANES {
+            k[lane] = first + NUMBERS[lane];
+            let of_last = q(k[lane], last[lane]);
+            lanes[lane] = if k[lane] < done { 0.0 } else { of_last };
+        }
+    } else {
+        for (lane, &value) in rest.iter().enumerate() {
+            lanes[lane] = q(k[lane], value);
+        }
+    }
+    visit(&k, &lanes);
+}
+
+/// 0, 1, .. 7.
+const NUMBERS: Lanes = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// Nodes in standard deviations and weights of Gauss's rule for a uniform distribution.
 const GAUSS: [(f64, f64); 3] =

@@ -13,7 +13,6 @@ pub const MAX_PIXELS: usize = 1 << 30;
 
 mod sealed {
     use crate::enhance::{Buffers, Columns, Enhancer};
-    use crate::fit::RunSums;
     use crate::group::{Compiled, Isa, Kernel, LinkRule, RowMasks};
 
     /// What the stages need of a pixel type, and nobody else.
@@ -22,8 +21,6 @@ mod sealed {
         fn distance(self, other: Self) -> Self;
         /// The largest value of this type that is not above theta; for `f32`, the nearest.
         fn floor_from(theta: f64) -> Self;
-        /// Sums of a run's values, less `first` each.
-        fn run_sums(values: &[Self], first: Self) -> RunSums;
         /// What kernels compare with for the range's high end: `high - low` for integers, else `high`.
         fn high_or_span(low: Self, high: Self) -> Self;
         /// The kernel's functions for this type.
@@ -35,7 +32,7 @@ mod sealed {
     }
 
     macro_rules! sealed {
-        ($t:ident, $masks:ident, $distance:expr, $floor_from:expr, $high_or_span:expr, $run_sums:expr) => {
+        ($t:ident, $masks:ident, $distance:expr, $floor_from:expr, $high_or_span:expr) => {
             impl Sealed for $t {
                 #[inline(always)]
                 fn distance(self, other: Self) -> Self {
@@ -43,10 +40,6 @@ mod sealed {
                 }
                 fn floor_from(theta: f64) -> Self {
                     $floor_from(theta)
-                }
-                #[inline(always)]
-                fn run_sums(values: &[Self], first: Self) -> RunSums {
-                    $run_sums(values, first)
                 }
                 fn high_or_span(low: Self, high: Self) -> Self {
                     $high_or_span(low, high)
@@ -65,25 +58,9 @@ mod sealed {
         };
     }
     // `as` from a float clamps to the type's range and drops the fraction.
-    sealed!(u8, masks_u8, u8::abs_diff, |theta: f64| theta as u8, |low, high: u8| high - low, |values, first: u8| {
-        RunSums::of_whole(values, first.into())
-    });
-    sealed!(
-        u16,
-        masks_u16,
-        u16::abs_diff,
-        |theta: f64| theta as u16,
-        |low, high: u16| high - low,
-        |values, first: u16| RunSums::of_whole(values, first.into())
-    );
-    sealed!(
-        f32,
-        masks_f32,
-        |a: f32, b: f32| (a - b).abs(),
-        |theta: f64| theta as f32,
-        |_, high| high,
-        |values, first: f32| RunSums::of(values, |_, value: f32| f64::from(value) - f64::from(first))
-    );
+    sealed!(u8, masks_u8, u8::abs_diff, |theta: f64| theta as u8, |low, high: u8| high - low);
+    sealed!(u16, masks_u16, u16::abs_diff, |theta: f64| theta as u16, |low, high: u16| high - low);
+    sealed!(f32, masks_f32, |a: f32, b: f32| (a - b).abs(), |theta: f64| theta as f32, |_, high| high);
 }
 
 /// A pixel type: `u8`, `u16` or `f32`.

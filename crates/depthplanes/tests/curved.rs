@@ -84,8 +84,7 @@ fn squares(random: &mut Random, side: usize, alarms: &mut Alarms) {
     alarms.add(&map, &(0..columns * rows).map(middle).collect::<Vec<_>>());
 }
 
-/// Roofs of two flat halves, `width` columns each, that meet in a ridge `height` deviations above the best plane through
-/// both, root mean square of half of it.
+/// Roofs of two flat halves, `width` columns each, whose ridge is `height` noise deviations above their eaves.
 fn roofs(random: &mut Random, width: usize, height: f64, alarms: &mut Alarms) {
     let (pitch, rows) = (2 * width + 8, HEIGHT / 48);
     let columns = WIDTH / pitch;
@@ -127,6 +126,8 @@ fn flat_regions_are_rarely_called_curved() {
                 roofs(&mut random, width, height, &mut alarms);
             }
             println!("roofs of halves {width} wide, {height} deviations high: {alarms:?}");
+            // A lower one is no more than a bend of the surface.
+            assert!(height < 16.0 || alarms.all() <= 2, "{width} {height}: {alarms:?}");
         }
     }
 }
@@ -165,7 +166,7 @@ fn most_of_balls_and_columns_is_reported() {
             100.0 * share(as_planes, curved),
             100.0 * false_rate
         );
-        assert!(rate > 0.5 && false_rate < 0.05, "{sensor}: {rate} {false_rate}");
+        assert!(rate > 0.72 && false_rate < 0.01, "{sensor}: {rate} {false_rate}");
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod naive;
 
-use depthplanes::fit::{AffineFit, Moments, RunSums, hessian, metric_covariance};
+use depthplanes::fit::{AffineFit, Moments, ValueSums, hessian, metric_covariance};
 use depthplanes::{Hessian, Intrinsics};
 use naive::Random;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, SMatrix, Vector3, Vector4};
@@ -168,7 +168,10 @@ fn sums_of_a_run_are_the_sums_of_its_pixels() {
         let values: Vec<u16> = (0..length).map(|_| random.below(65_536) as u16).collect();
         let (u, v, first) = (random.below(50) as f64 - 25.0, random.below(50) as f64, 1000.0);
         let (mut given, mut expected) = (Moments::default(), Moments::default());
-        given.add_run(u, v, &RunSums::of(&values, |_, value| f64::from(value) - first));
+        given.add_places(u, v, values.len());
+        let mut sums = ValueSums::default();
+        sums.add(u, v, &values, |value| f64::from(value) - first);
+        let given = given.with(&sums);
         values.iter().zip(0..).for_each(|(&q, k)| expected.add(u + f64::from(k), v, f64::from(q) - first));
         // Whole numbers below 2^53 add up without rounding in any order.
         assert_eq!(given, expected, "{length} pixels");

@@ -104,18 +104,18 @@ impl Sums {
         TERMS.map(|[j, i]| self.right[j][i])
     }
 
-    /// The least-squares coefficients of the first `count` terms; those that the cells do not determine are 0.
-    fn solve(&self, count: usize) -> [f64; 6] {
+    /// The least-squares coefficients of the first N terms; those that the cells do not determine are 0.
+    fn solve<const N: usize>(&self) -> [f64; 6] {
         let (mut m, mut r) = (self.matrix(), self.right());
         let diagonal: [f64; 6] = std::array::from_fn(|i| m[i][i]);
         let mut pivots = [false; 6];
-        for i in 0..count {
+        for i in 0..N {
             pivots[i] = m[i][i] > 1e-9 * diagonal[i];
             if pivots[i] {
-                for k in i + 1..count {
+                for k in i + 1..N {
                     let factor = m[k][i] / m[i][i];
                     r[k] -= factor * r[i];
-                    for j in i..count {
+                    for j in i..N {
                         m[k][j] -= factor * m[i][j];
                     }
                 }
@@ -123,7 +123,7 @@ impl Sums {
         }
         let mut solution = [0.0; 6];
         for i in (0..6).rev().filter(|&i| pivots[i]) {
-            let known: f64 = (i + 1..count).map(|j| m[i][j] * solution[j]).sum();
+            let known: f64 = (i + 1..N).map(|j| m[i][j] * solution[j]).sum();
             solution[i] = (r[i] - known) / m[i][i];
         }
         solution
@@ -131,7 +131,7 @@ impl Sums {
 
     /// What a quadratic explains beyond a plane.
     fn bow(&self) -> f64 {
-        self.left_by(&self.solve(3)) - self.left_by(&self.solve(6))
+        self.left_by(&self.solve::<3>()) - self.left_by(&self.solve::<6>())
     }
 
     /// Sum of the weighed squares that these coefficients leave.
@@ -182,6 +182,8 @@ impl CellBox {
 #[derive(Debug, Default)]
 pub(super) struct Facets {
     sums: Vec<Sums>,
+    /// For each region what a quadratic explains beyond its plane.
+    bows: Vec<f64>,
     pub(super) boxes: Vec<CellBox>,
     /// For each region the coarsest grid that shows its shape.
     levels: Vec<u8>,
@@ -216,19 +218,21 @@ impl Facets {
     pub(super) fn mark(&mut self, pyramid: &mut Pyramid, regions: &mut Regions, pairs: &[Pair], noise: &NoiseModel) {
         let cells = pyramid.grids[0].len();
         reserve_to(&mut self.sums, cells);
+        reserve_to(&mut self.bows, cells);
         reserve_to(&mut self.boxes, cells);
         reserve_to(&mut self.levels, cells);
         reserve_to(&mut self.signs, cells);
         pyramid.hand_up();
-        let Facets { sums, boxes, levels, signs } = self;
+        let Facets { sums, bows, boxes, levels, signs } = self;
         find_boxes(&pyramid.grids[0], regions.all.len(), boxes);
         mark_bowed(pyramid, &regions.all, sums, levels, signs);
+        bows.extend(sums.iter().map(Sums::bow));
         let scene = Scene { pyramid, all: &regions.all, noise, boxes, levels };
         for pair in pairs.iter().filter(|pair| !scene.are_apart(pair)) {
             let [a, b] = pair.ids;
             let is_larger = boxes[a as usize].area() < boxes[b as usize].area();
             let [small, large] = if is_larger { [a, b] } else { [b, a] };
-            if scene.is_sharp(small, large) || sums[small as usize].bow() + sums[large as usize].bow() < GAIN {
+            if scene.is_sharp(small, large) || bows[small as usize] + bows[large as usize] < GAIN {
                 continue;
             }
             if let Some(seen) = scene.joint(small, |id| id == large).is_smooth() {
@@ -252,8 +256,8 @@ impl Facets {
     /// Root mean square of a plane's bow, in noise deviations of a pixel, and the most that is taken for flat; none for
     /// a region that is too small to tell.
     pub(super) fn bow(&self, id: u32) -> Option<[f64; 2]> {
-        let sums = &self.sums[id as usize];
-        (sums.pixels >= LEAST).then(|| [(sums.bow().max(0.0) / sums.pixels).sqrt(), BOW])
+        let (bow, pixels) = (self.bows[id as usize], self.sums[id as usize].pixels);
+        (pixels >= LEAST).then(|| [(bow.max(0.0) / pixels).sqrt(), BOW])
     }
 }
 
@@ -460,7 +464,7 @@ struct Joint {
 
 impl Joint {
     fn of(sums: [Sums; 2]) -> Self {
-        let quadratic = sums[0].merge(&sums[1]).solve(6);
+        let quadratic = sums[0].merge(&sums[1]).solve::<6>();
         let missed = [0, 1].map(|which: usize| sums[which].left_by(&quadratic) - sums[which].cells);
         Joint { sums, missed }
     }
@@ -486,7 +490,7 @@ impl Joint {
     fn bends(&self) -> bool {
         let both = self.sums[0].merge(&self.sums[1]);
         let missed: f64 = self.missed.iter().sum();
-        let by_plane = both.left_by(&both.solve(3)) - both.cells;
+        let by_plane = both.left_by(&both.solve::<3>()) - both.cells;
         let is_better = missed + GAIN <= by_plane;
         let is_bent = self.is_close(SMOOTH) || (self.is_close(LOOSE) && missed <= CREASE * by_plane);
         self.has_enough() && is_better && is_bent
