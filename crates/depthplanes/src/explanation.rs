@@ -182,20 +182,23 @@ impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Verdict::Plane { label, pixels, off: Some(off) } => {
-                write!(f, "It belongs to plane {label} of {pixels} pixels, {off:.1} standard deviations off.")
+                write!(f, "It belongs to plane {label} of {}, {off:.1} standard deviations off.", counted(*pixels))
             }
-            Verdict::Plane { label, pixels, off: None } => write!(f, "It belongs to plane {label} of {pixels} pixels."),
+            Verdict::Plane { label, pixels, off: None } => {
+                write!(f, "It belongs to plane {label} of {}.", counted(*pixels))
+            }
             Verdict::NotMeasured => write!(f, "No plane here: nothing was measured at this pixel."),
             Verdict::Sparse { pixels, least } => write!(
                 f,
-                "No plane here: only {pixels} pixels of its tile were measured, and a region starts from {least}."
+                "No plane here: of its tile's pixels {pixels} were measured, and a region starts from {least}."
             ),
             Verdict::Small { pixels, min, early: false } => {
-                write!(f, "No plane here: its surface has {pixels} pixels, and min = {min} asks for more.")
+                write!(f, "No plane here: its surface has {}, and min = {min} asks for more.", counted(*pixels))
             }
             Verdict::Small { pixels, min, early: true } => write!(
                 f,
-                "No plane here: its region of {pixels} pixels is smaller than half of min = {min}, and is not looked at further."
+                "No plane here: its region of {} is smaller than half of min = {min}, and is not looked at further.",
+                counted(*pixels)
             ),
             Verdict::Curved => write!(f, "No plane here: it is part of a surface that bends; see `detect --curved`."),
             Verdict::Uneven { roughness } => write!(
@@ -222,6 +225,11 @@ impl fmt::Display for Verdict {
             Verdict::Unexplained { label } => write!(f, "It belongs to plane {label}; the method does not say why."),
         }
     }
+}
+
+/// So many pixels, in words.
+fn counted(pixels: usize) -> String {
+    if pixels == 1 { "1 pixel".into() } else { format!("{pixels} pixels") }
 }
 
 /// A change of parameters after which the pixel belongs to a plane.

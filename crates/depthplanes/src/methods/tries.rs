@@ -50,9 +50,13 @@ impl Tries<'_> {
     }
 }
 
+/// Fewest pixels of a surface that `min` is lowered for: to take in stray pixels would make a plane of each.
+const STRAY: usize = 8;
+
 /// The changes of `min` that may let a surface of so many pixels in: little less than it has, then fewer.
 pub(super) fn smaller_min(pixels: usize) -> impl Iterator<Item = Change> {
-    [0.97, 0.8, 0.6, 0.4, 0.2, 0.1, 0.0].into_iter().map(move |share| vec![("min", floored(share * pixels as f64))])
+    let shares = [0.97, 0.8, 0.6, 0.4, 0.2, 0.1, 0.0].into_iter().filter(move |_| pixels >= STRAY);
+    shares.map(move |share| vec![("min", floored(share * pixels as f64))])
 }
 
 /// A whole number not above, of two digits.

@@ -396,7 +396,8 @@ impl Seen {
             Space::Value => vec![("noise", rounded_up(factor * here))],
             Space::InverseDepth { .. } => {
                 let (z, sigma_m) = (self.q.recip(), here / (self.q * self.q));
-                let base = noise.depth_sigma_m(1e-6).unwrap_or(0.0);
+                // At no range, as good as; what is below a nanometre is growth.
+                let base = noise.depth_sigma_m(1e-6).filter(|base| *base > 1e-9).unwrap_or(0.0);
                 let own = noise.depth_sigma_m(z).unwrap_or(0.0);
                 let growth = ((own - base) / (z * z)).max(0.0);
                 // What rounding adds counts as well, since the noise as stated may be nothing.
