@@ -289,11 +289,10 @@ impl Scene<'_> {
             let [a, b] = pair.ids.map(|id| id as usize);
             for (small, other) in [(a, b), (b, a)] {
                 let may_continue = signs[other].is_some() && signs[small].is_none() && self.all[small].sums.n < LEAST;
-                if may_continue && !self.are_apart(pair) {
-                    if self.joint(small as u32, |id| signs[id as usize].is_some()).continues() {
-                        signs[small] = Some(Sign::Continues);
-                        any = true;
-                    }
+                let continues = || self.joint(small as u32, |id| signs[id as usize].is_some()).continues();
+                if may_continue && !self.are_apart(pair) && continues() {
+                    signs[small] = Some(Sign::Continues);
+                    any = true;
                 }
             }
         }

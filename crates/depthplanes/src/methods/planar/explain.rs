@@ -23,6 +23,8 @@ use crate::with_view;
 const DEVIATIONS: &str = "standard deviations";
 /// Factors by which the noise or the confidence may be raised for a suggestion; with more, anything is a plane.
 const FACTORS: [f64; 6] = [1.0, 1.2, 1.5, 2.0, 3.0, 4.0];
+/// Bows of less than so many times what is taken for flat may be those of a distorted plane.
+const SLIGHT: f64 = 1.5;
 /// Largest confidence that is suggested: further off, a pixel is on something else.
 const MOST_CONFIDENCE: f64 = 12.0;
 
@@ -76,6 +78,8 @@ struct Seen {
     /// Valid pixels of its tile, and the tile's roughness.
     tile: [f64; 2],
     fate: Fate,
+    /// Its bow as a multiple of what is taken for flat, if that is what makes it curved.
+    bow: Option<f64>,
     against: Vec<Against>,
     /// Most that is accepted, standard deviations.
     most: f64,
@@ -95,6 +99,7 @@ impl Seen {
             q: f64::NAN,
             tile: [0.0; 2],
             fate: Fate::None,
+            bow: None,
             against: Vec::new(),
             most: 0.0,
             assigned: 0,
@@ -252,6 +257,7 @@ impl Seen {
             Some(Sign::Continues) => "curved: it continues a curved neighbour".to_string(),
         };
         let finding = Finding::new("judge", "is it flat?", outcome).refusing(sign.is_some());
+        self.bow = run.facets.bow(id).filter(|_| sign == Some(Sign::Bow)).map(|[bow, most]| bow / most);
         let finding = match run.facets.bow(id) {
             Some([bow, most]) => finding.with("bow", bow, DEVIATIONS).limit(Limit::AtMost(most)),
             None => finding,
@@ -377,6 +383,8 @@ impl Seen {
                     self.noises(1.2),
                 ]
             }
+            // Sensors bend walls a little; a ball is bent by much more.
+            Verdict::Curved => self.bow.filter(|bow| *bow < SLIGHT).map(|bow| self.noises(bow)).into_iter().collect(),
             _ => nothing(),
         }
     }
