@@ -7,6 +7,7 @@
 mod flags;
 
 use clap::{Arg, ArgMatches, builder::PossibleValuesParser, value_parser};
+use depthplanes::Coplanar;
 use depthplanes::methods::{self, METHODS, MethodInfo};
 use depthplanes::outline::DEFAULT_TOLERANCE_PX;
 use depthplanes_io::outputs::{OUTPUTS, Output};
@@ -45,6 +46,8 @@ pub(crate) struct Detect {
     pub(crate) outputs: Vec<(&'static Output, PathBuf)>,
     pub(crate) out_dir: Option<PathBuf>,
     pub(crate) legend: bool,
+    /// Angle in degrees and distance in metres within which coplanar planes are joined, if that is wanted.
+    pub(crate) merge_coplanar: Option<[f64; 2]>,
     /// Tolerance of the planes' outlines, pixels, if they are wanted.
     pub(crate) outlines: Option<f64>,
     /// Whether surfaces that bend are wanted as well.
@@ -176,6 +179,7 @@ fn detect_command() -> clap::Command {
         .arg(method_arg("method").long("method").default_value(METHODS[0].name).help("How to look for planes"))
         .args(flags::method_parameters())
         .arg(flags::noise_table())
+        .arg(merge_coplanar_flag())
         .args(output_flags())
         .args(running_flags())
 }
@@ -215,6 +219,17 @@ fn output_flags() -> Vec<Arg> {
         flags::count("rows", "N").default_value("20").help("Planes in the printed table").help_heading("Output"),
     ]);
     all
+}
+
+fn merge_coplanar_flag() -> Arg {
+    let Coplanar { angle_deg, distance_m } = Coplanar::default();
+    let both = format!("{angle_deg},{distance_m}");
+    let help = format!(
+        "Join separate pieces of one plane whose normals differ by at most ANGLE_DEG degrees and whose middles lie \
+         within DISTANCE_M metres of each other's plane [default {both}]; needs unit and camera"
+    );
+    let flag = flags::numbers::<2>("merge-coplanar", "ANGLE_DEG,DISTANCE_M").long("merge-coplanar");
+    flag.num_args(0..=1).require_equals(true).default_missing_value(both).help(help)
 }
 
 fn outlines_flag() -> Arg {
@@ -302,6 +317,7 @@ fn detect(matches: &ArgMatches) -> Detect {
         outputs: outputs.collect(),
         out_dir: path(matches, "out-dir"),
         legend: matches.get_flag("legend"),
+        merge_coplanar: matches.get_one("merge-coplanar").copied(),
         outlines: matches.get_one("outlines").copied(),
         curved: matches.get_flag("curved"),
         json: matches.get_flag("json"),

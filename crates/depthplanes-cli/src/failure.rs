@@ -86,7 +86,12 @@ impl fmt::Display for Failure {
 
 impl From<depthplanes::Error> for Failure {
     fn from(error: depthplanes::Error) -> Self {
-        Failure::request(error.to_string())
+        let how = match error {
+            depthplanes::Error::NotMetric { is_disparity: true, .. } => ": give --focal and --baseline",
+            depthplanes::Error::NotMetric { .. } => ": give --intrinsics fx,fy,cx,cy, --camera FILE or --preset SENSOR",
+            _ => "",
+        };
+        Failure::request(format!("{error}{how}"))
     }
 }
 

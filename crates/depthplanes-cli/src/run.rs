@@ -3,7 +3,7 @@
 use crate::failure::{Failure, Outcome};
 use depthplanes::methods::{METHODS, MethodInfo};
 use depthplanes::outline::{Outliner, Outlines};
-use depthplanes::{AnyView, Detection, Detector, Sensor};
+use depthplanes::{AnyView, Coplanar, Detection, Detector, Sensor};
 use depthplanes_io::Frame;
 use depthplanes_io::outputs::{Spread, Times};
 use std::time::Instant;
@@ -16,6 +16,8 @@ pub(crate) struct Recipe {
     pub(crate) method: &'static MethodInfo,
     pub(crate) values: Vec<f64>,
     threads: usize,
+    /// Within what coplanar planes are joined, if that is wanted.
+    pub(crate) coplanar: Option<Coplanar>,
     /// Tolerance of the planes' outlines, pixels, if they are wanted.
     outlines: Option<f64>,
     curved: bool,
@@ -40,7 +42,7 @@ impl Recipe {
             values[at.ok_or_else(|| lacks(method, name))?] = value;
         }
         method.with(given)?;
-        Ok(Recipe { method, values, threads, outlines: None, curved: false })
+        Ok(Recipe { method, values, threads, coplanar: None, outlines: None, curved: false })
     }
 
     /// With the planes' outlines, simplified to within so many pixels.
@@ -72,6 +74,15 @@ impl Recipe {
         Ok(self)
     }
 
+    /// With coplanar planes joined within an angle in degrees and a distance in metres.
+    ///
+    /// # Errors
+    /// Limits out of range.
+    pub(crate) fn merge_coplanar(mut self, limits: Option<[f64; 2]>) -> Outcome<Self> {
+        self.coplanar = limits.map(|[angle_deg, distance_m]| Coplanar::new(angle_deg, distance_m)).transpose()?;
+        Ok(self)
+    }
+
     fn outliner(&self) -> Outcome<Option<Outliner>> {
         Ok(self.outlines.map(Outliner::new).transpose()?)
     }
@@ -79,7 +90,11 @@ impl Recipe {
     /// A detector of it for a sensor.
     pub(crate) fn detector(&self, sensor: Sensor) -> Detector {
         let method = (self.method.build)(&self.values).expect("the parameters were checked");
-        Detector::from_method(method).threads(self.threads).curved(self.curved).sensor(sensor)
+        let detector = Detector::from_method(method).threads(self.threads).curved(self.curved).sensor(sensor);
+        match self.coplanar {
+            Some(within) => detector.merge_coplanar(within).expect("the limits were checked"),
+            None => detector,
+        }
     }
 }
 

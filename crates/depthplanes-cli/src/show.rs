@@ -22,9 +22,14 @@ pub(crate) fn summary(report: &Report<'_>) -> String {
         1 => "1 plane".into(),
         count => format!("{count} planes"),
     };
+    let joined = detection.parts.chunk_by(|a, b| a.of == b.of).count();
+    let joined = match joined {
+        0 => String::new(),
+        _ => format!(" ({joined} joined of {} parts)", detection.parts.len()),
+    };
     let whole = if detection.filled_pixels > 0 { "valid and filled pixels" } else { "valid pixels" };
     let share = percent(detection.labelled_share());
-    text += &format!("{} ({}): {planes} on {share} of the {whole}\n", report.method.name, parameters(report));
+    text += &format!("{} ({}): {planes}{joined} on {share} of the {whole}\n", report.method.name, parameters(report));
     if let Some(curved) = &detection.curved {
         text += &surfaces(curved, detection);
     }

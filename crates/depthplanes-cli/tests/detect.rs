@@ -302,3 +302,51 @@ fn a_file_name_need_not_be_text() {
     let record = json(&Ran::from(command.args(["detect", "--json"]).arg(name).output().unwrap()).ok());
     assert_eq!(record["planes"].as_array().unwrap().len(), 2);
 }
+
+#[test]
+fn coplanar_pieces_are_joined_and_their_records_kept() {
+    let bench = Bench::new("coplanar");
+    // A wall one metre away with a gap of two metres depth in its middle.
+    let value = |at: usize| if (12..20).contains(&(at % 32)) { 2000u16 } else { 1000 };
+    let mut bytes = b"P5 32 24 65535\n".to_vec();
+    bytes.extend((0..32 * 24).flat_map(|at| value(at).to_be_bytes()));
+    bench.write("gap.pgm", &bytes);
+    let words = ["detect", "gap.pgm", "--encoding", "millimetre", "--intrinsics", "30,30,15.5,11.5"];
+    let run = |more: &[&str]| bench.run(&[&words[..], more].concat());
+    let plain = json(&run(&["--json"]).ok());
+    assert_eq!(plain["planes"].as_array().unwrap().len(), 3);
+    assert!(plain.get("merge_coplanar").is_none());
+    let joined = json(&run(&["--json", "--outlines", "--merge-coplanar"]).ok());
+    assert_eq!(joined["merge_coplanar"], serde_json::json!({"angle_deg": 3.0, "distance_m": 0.03}));
+    let planes = joined["planes"].as_array().unwrap();
+    assert_eq!(planes.len(), 2);
+    assert_eq!(planes[0]["pixel_count"], 24 * 24);
+    assert_eq!(planes[0]["outline"]["polygons_px"].as_array().unwrap().len(), 2);
+    assert_eq!(planes[0]["parts"], serde_json::json!([plain["planes"][0], plain["planes"][1]]));
+    assert!(planes[1].get("parts").is_none());
+    assert!(run(&["--merge-coplanar=2,0.01"]).ok().contains("2 planes (1 joined of 2 parts) on 100.0 %"));
+    let room =
+        ["detect", "scene:room:seed=2,sensor=tof,size=320x240", "--method", "planar", "--merge-coplanar", "--json"];
+    let large = json(&bench.run(&[&room[..], &["--min-area", "0.5"]].concat()).ok());
+    assert_eq!(large["parameters"]["min-area"], 0.5);
+    let areas: Vec<f64> =
+        large["planes"].as_array().unwrap().iter().map(|plane| plane["metric"]["area_m2"].as_f64().unwrap()).collect();
+    assert!(areas.len() > 2 && areas.iter().all(|&area| area >= 0.5), "{areas:?}");
+}
+
+#[test]
+fn what_needs_metres_says_how_to_state_the_camera() {
+    let bench = Bench::with_map("not_metric");
+    let err = bench.run(&["detect", "map.pgm", "--merge-coplanar"]).fails(2);
+    assert!(err.contains("`merge-coplanar` needs planes in metres; state the camera's intrinsics: give --intrinsics"));
+    let err = bench.run(&["detect", "map.pgm", "--method", "planar", "--min-area", "1"]).fails(2);
+    assert!(err.contains("`min-area` needs planes in metres; state the camera's intrinsics: give --intrinsics"));
+    let err = bench.run(&["detect", "map.pgm", "--disparity", "--merge-coplanar"]).fails(2);
+    assert!(err.contains("state the rig's focal length and baseline: give --focal and --baseline"), "{err}");
+    let err = bench.run(&["detect", "map.pgm", "--merge-coplanar=91,0.1"]).fails(2);
+    assert!(
+        err.contains("parameter `merge-coplanar: angle` is 91; accepted: a number of degrees from 0 to 90"),
+        "{err}"
+    );
+    bench.run(&["detect", "map.pgm", "--merge-coplanar=3"]).fails(2);
+}

@@ -92,6 +92,7 @@ fn overlay(method: &'static MethodInfo, frame: &Frame, detection: &Detection) ->
         method,
         parameters: &method.defaults(),
         detection,
+        coplanar: None,
         outlines: None,
         times: None,
         legend: false,

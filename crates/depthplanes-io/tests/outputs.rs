@@ -3,7 +3,7 @@
 mod support;
 
 use depthplanes::outline::{Outliner, Outlines};
-use depthplanes::{Detection, Detector, Measure, Ngaf, Sensor};
+use depthplanes::{Coplanar, Detection, Detector, Measure, Ngaf, Part, Sensor};
 use depthplanes_io::outputs::{self, OUTPUTS, Output, OutputError, Report, Spread, Times};
 use depthplanes_io::{Frame, Pixels};
 use std::path::{Path, PathBuf};
@@ -122,6 +122,21 @@ fn planes_json_and_its_line_are_the_same_value() {
     assert_eq!(document["planes"].as_array().unwrap().len(), 3);
     assert!(document["planes"][2]["fit"].is_null());
     assert!(document.get("time_ms").is_none());
+}
+
+#[test]
+fn the_record_of_a_joined_plane_has_its_parts_as_they_were() {
+    let (frame, mut detection) = (frame(), detection());
+    let plain = outputs::json_line(&report(&frame, &detection));
+    assert!(!plain.contains("parts") && !plain.contains("merge_coplanar"), "{plain}");
+    detection.parts = [1, 2].map(|at| Part { of: 2, plane: detection.planes[at].clone() }).to_vec();
+    let coplanar = Coplanar::new(4.0, 0.05).ok();
+    let line = outputs::json_line(&Report { coplanar, ..report(&frame, &detection) });
+    let (record, plain): (serde_json::Value, serde_json::Value) =
+        (serde_json::from_str(&line).unwrap(), serde_json::from_str(&plain).unwrap());
+    assert_eq!(record["merge_coplanar"], serde_json::json!({"angle_deg": 4.0, "distance_m": 0.05}));
+    assert_eq!(record["planes"][1]["parts"], serde_json::json!([plain["planes"][1], plain["planes"][2]]));
+    assert!(record["planes"][0].get("parts").is_none());
 }
 
 #[test]
@@ -336,11 +351,13 @@ fn the_schema_page_names_every_field_and_column() {
     let page =
         std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/planes-schema.md")).unwrap();
     assert!(page.contains(&outputs::CSV_COLUMNS.join(",")));
-    let (frame, detection) = (frame(), detection());
+    let (frame, mut detection) = (frame(), detection());
+    detection.parts = detection.planes[..2].iter().map(|plane| Part { of: 1, plane: plane.clone() }).collect();
+    let coplanar = Some(Coplanar::default());
     let times = Times::default();
     let mut outliner = Outliner::default();
     let outlines = outliner.outline(&detection, frame.sensor.intrinsics.as_ref()).ok();
-    let line = outputs::json_line(&Report { times: Some(&times), outlines, ..report(&frame, &detection) });
+    let line = outputs::json_line(&Report { times: Some(&times), outlines, coplanar, ..report(&frame, &detection) });
     let record: serde_json::Value = serde_json::from_str(&line).unwrap();
     let plane = &record["planes"][0];
     let keys = |value: &serde_json::Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();

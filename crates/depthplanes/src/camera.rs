@@ -159,6 +159,18 @@ pub struct Sensor {
     pub noise: Option<SensorNoise>,
 }
 
+impl Sensor {
+    /// Whether planes can be given in metres.
+    ///
+    /// # Errors
+    /// [`Error::NotMetric`] for what `wants` them, unless the measure is metric and the camera known.
+    pub(crate) fn check_metric(&self, wants: &'static str) -> Result<()> {
+        let is_disparity = self.measure == Measure::Disparity;
+        let is_metric = !is_disparity && self.intrinsics.is_some();
+        if is_metric { Ok(()) } else { Err(Error::NotMetric { wants, is_disparity }) }
+    }
+}
+
 impl Default for Sensor {
     /// Depth in millimetres, camera unknown.
     fn default() -> Self {

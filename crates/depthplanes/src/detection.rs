@@ -13,6 +13,9 @@ pub struct Detection {
     pub labels: Vec<u16>,
     /// By decreasing pixel count; equal counts by first pixel in raster order.
     pub planes: Vec<Plane>,
+    /// The planes as they were before coplanar ones were joined ([`crate::Detector::merge_coplanar`]): those of which
+    /// several became one, by label of the union, then by their own.
+    pub parts: Vec<Part>,
     /// Valid pixels of the map that was given.
     pub valid_pixels: usize,
     /// Missing pixels that enhancing filled (paper, section 3b).
@@ -49,6 +52,12 @@ impl Detection {
         self.planes.iter().map(|plane| plane.pixel_count).sum()
     }
 
+    /// The parts of the plane with that label; none unless it was joined of several.
+    pub fn parts_of(&self, label: u16) -> &[Part] {
+        let end = |label: u16| self.parts.partition_point(|part| part.of <= label);
+        &self.parts[end(label.saturating_sub(1))..end(label)]
+    }
+
     /// Share (0..=1) of the valid and filled pixels that belong to some plane, the paper's
     /// "percentage of valid points"; 0 for a map without a valid pixel.
     pub fn labelled_share(&self) -> f64 {
@@ -79,6 +88,15 @@ pub struct Plane {
     /// The plane in camera coordinates; `None` without intrinsics and a metric measure, or without
     /// a fit.
     pub metric: Option<MetricPlane>,
+}
+
+/// One of several planes that were joined into one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Label of the plane that it is now a part of.
+    pub of: u16,
+    /// The plane before, with the label that it had then.
+    pub plane: Plane,
 }
 
 /// Columns `u_min..=u_max`, rows `v_min..=v_max`.

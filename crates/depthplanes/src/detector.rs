@@ -1,6 +1,7 @@
 //! The front door: one method, one sensor, and the memory they reuse from frame to frame.
 
 use crate::camera::Sensor;
+use crate::coplanar::{Coplanar, Joiner};
 use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::explanation::Explanation;
@@ -30,6 +31,7 @@ pub struct Detector {
     sensor: Sensor,
     threads: usize,
     curved: bool,
+    joiner: Option<Joiner>,
     detection: Detection,
 }
 
@@ -47,7 +49,14 @@ impl Detector {
 
     /// A detector of a method that was built by name ([`crate::methods::find`]).
     pub fn from_method(method: Box<dyn Method>) -> Self {
-        Detector { method, sensor: Sensor::default(), threads: 1, curved: false, detection: Detection::default() }
+        Detector {
+            method,
+            sensor: Sensor::default(),
+            threads: 1,
+            curved: false,
+            joiner: None,
+            detection: Detection::default(),
+        }
     }
 
     /// States what the map's numbers mean and which camera saw them; needed for metric planes.
@@ -69,9 +78,21 @@ impl Detector {
         self
     }
 
+    /// Joins separate pieces of one geometric plane: one record for their union, fitted anew from all of its pixels, and
+    /// the pieces' own in [`Detection::parts`]. Needs a sensor whose planes are in metres. See [`crate::coplanar`].
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if a limit is out of range.
+    pub fn merge_coplanar(mut self, within: Coplanar) -> Result<Self> {
+        self.joiner = Some(Joiner::new(within)?);
+        Ok(self)
+    }
+
     /// Finds planes in one map.
     ///
     /// # Errors
+    /// [`Error::NotMetric`] if coplanar planes are to be joined, or a parameter is in metres, and the sensor is not known
+    /// well enough for planes in metres.
     /// [`Error::TooManyPlanes`] if there are more planes than 16-bit labels can name.
     pub fn detect<'m>(&mut self, map: impl Into<AnyView<'m>>) -> Result<&Detection> {
         self.detect_observed(map, &mut |_| ())
@@ -86,14 +107,19 @@ impl Detector {
         map: impl Into<AnyView<'m>>,
         observer: &mut dyn FnMut(&'static str),
     ) -> Result<&Detection> {
-        let mut job = Job { sensor: self.sensor, threads: self.threads, curved: self.curved, observer };
+        if self.joiner.is_some() {
+            self.sensor.check_metric("merge-coplanar")?;
+        }
+        self.detection.parts.clear();
+        let joiner = self.joiner.as_mut();
+        let mut job = Job { sensor: self.sensor, threads: self.threads, curved: self.curved, joiner, observer };
         self.method.run(map.into(), &mut job, &mut self.detection)?;
         Ok(&self.detection)
     }
 
     /// Says why the pixel in column `at[0]`, row `at[1]` belongs to a plane or to none: what each stage saw there, and
     /// which parameters would let it in. Runs the method several times and allocates; [`Detector::detect`] pays
-    /// nothing for it.
+    /// nothing for it. Coplanar planes are not joined in it.
     ///
     /// # Errors
     /// [`Error::Pixel`] for a pixel outside of the map, and those of [`Detector::detect`].
@@ -113,7 +139,8 @@ impl Detector {
         if at[0] >= width || at[1] >= height {
             return Err(Error::Pixel { at, width, height });
         }
-        let mut job = Job { sensor: self.sensor, threads: self.threads, curved: false, observer: &mut |_| () };
+        let mut job =
+            Job { sensor: self.sensor, threads: self.threads, curved: false, joiner: None, observer: &mut |_| () };
         self.method.explain(map, &mut job, at)
     }
 }

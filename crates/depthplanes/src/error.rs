@@ -1,7 +1,7 @@
 //! What can be wrong with a call: the map, a parameter, a camera, or the answer's size.
 //!
 //! Every message says what was given and what is accepted; none is raised after the door
-//! (once a map and the parameters are accepted, only [`Error::TooManyPlanes`] can follow).
+//! (once a map, the parameters and the camera they need are accepted, only [`Error::TooManyPlanes`] can follow).
 
 use std::fmt;
 
@@ -74,6 +74,13 @@ pub enum Error {
         given: f64,
         /// What is accepted.
         accepted: &'static str,
+    },
+    /// Planes in metres are needed, and the camera or the rig is not known.
+    NotMetric {
+        /// Name of the parameter that needs them.
+        wants: &'static str,
+        /// Whether the rig is missing: the numbers are disparities of an unknown one.
+        is_disparity: bool,
     },
     /// A table of a sensor's noise that is none.
     NoiseTable {
@@ -155,6 +162,11 @@ impl fmt::Display for Error {
             }
             Error::Camera { name, given, accepted } => {
                 write!(f, "the camera's {name} is {given}; accepted: {accepted}")
+            }
+            Error::NotMetric { wants, is_disparity } => {
+                let missing =
+                    if *is_disparity { "the rig's focal length and baseline" } else { "the camera's intrinsics" };
+                write!(f, "`{wants}` needs planes in metres; state {missing}")
             }
             Error::NoiseTable { row: 0, given, accepted } => {
                 write!(f, "the table of the noise has {given} rows; accepted: {accepted}")

@@ -7,6 +7,7 @@
 //! [`outline`] makes polygons of what was found. [`metrics`] holds label images against the truth.
 
 pub mod camera;
+pub mod coplanar;
 pub mod describe;
 pub mod detection;
 mod detector;
@@ -24,7 +25,8 @@ pub mod scene;
 pub mod select;
 
 pub use camera::{Hessian, Intrinsics, Measure, Sensor};
-pub use detection::{CovarianceSource, Detection, Plane};
+pub use coplanar::Coplanar;
+pub use detection::{CovarianceSource, Detection, Part, Plane};
 pub use detector::Detector;
 pub use error::{Error, Result};
 pub use explanation::Explanation;

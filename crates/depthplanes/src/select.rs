@@ -87,6 +87,13 @@ impl Selection {
         self.label_groups(groups);
     }
 
+    /// Gives the planes other labels, of which several may be the same; 0 drops a plane. [`Selection::kept`] stays as it
+    /// is.
+    pub fn relabel(&mut self, new: impl Fn(u16) -> u16) {
+        let labels = self.label_of_group.iter_mut().filter(|label| **label > 0);
+        labels.for_each(|label| *label = new(*label));
+    }
+
     fn label_groups(&mut self, groups: &Groups) {
         self.label_of_group.clear();
         self.label_of_group.resize(groups.count(), 0);

@@ -6,7 +6,7 @@ mod naive;
 
 use depthplanes::methods::Method;
 use depthplanes::outline::Outliner;
-use depthplanes::{DepthView, Detector, Error, Intrinsics, Measure, Ngaf, Pixel, Planar, Sensor};
+use depthplanes::{Coplanar, DepthView, Detector, Error, Intrinsics, Measure, Ngaf, Pixel, Planar, Sensor};
 use naive::Random;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -144,6 +144,28 @@ fn later_frames_of_planar_allocate_nothing() {
                 check::<u16, _>(params, sensor, size, first);
                 check::<f32, _>(params, sensor, size, first);
             }
+        }
+    }
+}
+
+#[test]
+fn later_frames_with_coplanar_planes_joined_allocate_nothing() {
+    let (width, height) = (120, 90);
+    for sensor in &sensors()[1..] {
+        let ngaf = Detector::new(Ngaf { theta: 3.0, min: 2, ..Ngaf::default() }).unwrap();
+        let planar = Detector::new(Planar { min: 0, min_area: 1e-4, ..Planar::default() }).unwrap();
+        for detector in [ngaf, planar] {
+            let mut random = Random(5);
+            let within = Coplanar::new(10.0, 0.1).unwrap();
+            let mut detector = detector.sensor(*sensor).merge_coplanar(within).unwrap();
+            let frames: Vec<Vec<u16>> = (0..12).map(|k| frame(&mut random, k, width, height)).collect();
+            let mut parts = 0;
+            for (number, frame) in frames.iter().enumerate() {
+                let view = DepthView::new(frame, width, height).unwrap();
+                let (calls, bytes) = allocated(|| parts += detector.detect(view).unwrap().parts.len());
+                assert!(number == 0 || (calls, bytes) == (0, 0), "frame {number}: {calls} calls, {bytes} bytes");
+            }
+            assert!(parts > 0, "nothing was joined");
         }
     }
 }

@@ -13,6 +13,10 @@ fn detector(method: &'static MethodInfo, given: &[(&str, f64)], frame: &SceneFra
     Detector::from_method(method.with(given).unwrap()).sensor(frame.sensor)
 }
 
+fn detector_of(name: &str, given: &[(&str, f64)], frame: &SceneFrame) -> Detector {
+    detector(find(name).unwrap(), given, frame)
+}
+
 const SCENES: [&str; 6] = [
     "room:seed=2,sensor=tof,size=320x240",
     "random:seed=301,sensor=kinect,size=320x240",
@@ -121,6 +125,12 @@ fn each_reason_is_told() {
         [kind([5, 5]), kind([20, 20]), kind([70, 40]), kind([50, 50])],
         ["plane", "small", "not_measured", "off"]
     );
+
+    let frame = scene("boxes:seed=4,sensor=kinect,size=320x240");
+    let small = detector_of("planar", &[("min-area", 0.5)], &frame).explain(frame.view(), [40, 200]).unwrap();
+    let large = detector_of("planar", &[("min-area", 50.0)], &frame).explain(frame.view(), [40, 200]).unwrap();
+    assert_eq!((small.verdict.kind(), large.verdict.kind()), ("plane", "dropped"), "{small:?}");
+    assert_eq!(large.suggestions[0].parameters[0].0, "min-area");
 
     let ngaf = find("ngaf").unwrap();
     for (given, at, right) in [

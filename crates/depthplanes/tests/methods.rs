@@ -154,7 +154,10 @@ fn run_all(map: &[u8], width: usize, check: impl Fn(&Detection, &str)) {
                 let mut detector = Detector::from_method((method.build)(&values).unwrap()).sensor(sensor);
                 for view in views {
                     let what = format!("{} {values:?} on {width}x{height}", method.name);
-                    let found = detector.detect(view).unwrap();
+                    let found = match detector.detect(view) {
+                        Err(Error::NotMetric { .. }) if sensor.intrinsics.is_none() => continue,
+                        found => found.unwrap(),
+                    };
                     assert_eq!((found.width, found.height, found.labels.len()), (width, height, map.len()), "{what}");
                     check(found, &what);
                 }

@@ -70,23 +70,37 @@ fn the_three_planes_of_a_corner_are_found_with_their_equations() {
 
 #[test]
 fn rooms_of_boxes_balls_and_columns_are_found_as_they_are() {
-    // Seeds that the method was not tuned on. Without noise a ball's facets are small and some remain.
+    // Seeds that the method was not tuned on.
     for (sensor, noise, least, most_cover) in [
-        ("clean_mm", None, 0.87, 0.1),
-        ("kinect", Some(SensorNoise::Depth { base: 0.0, growth: 1.425e-3 }), 0.87, 0.1),
-        ("tof", None, 0.88, 0.1),
+        ("clean_mm", None, 0.9, 0.1),
+        ("kinect", Some(SensorNoise::Depth { base: 0.0, growth: 1.425e-3 }), 0.85, 0.1),
+        ("tof", None, 0.85, 0.1),
     ] {
-        let (mut f, mut covered, mut curved, seeds) = (0.0, 0, 0, 20);
-        for seed in 101..=100 + seeds {
+        let (mut f, mut covered, mut curved, seeds) = (0.0, 0, 0, 60);
+        let mut off = Vec::new();
+        for seed in 201..=200 + seeds {
             let mut frame = scene(&format!("random:seed={seed},sensor={sensor}"));
             frame.sensor.noise = noise;
             let found = detect(Planar::default(), &frame);
-            f += evops(&pairs(&frame, &found)).f_score / f64::from(seeds);
+            let score = evops(&pairs(&frame, &found));
+            f += score.f_score / f64::from(seeds);
+            let truth = frame.truth.pieces(1).planes;
+            off.extend(score.matched.iter().map(|pair| {
+                let metric = found.planes[usize::from(pair.prediction) - 1].metric.unwrap();
+                degrees(metric.plane.normal, truth[usize::from(pair.truth) - 1].plane.normal)
+            }));
             covered += covered_of_curved(&frame.truth, &found);
             curved += frame.truth.curved_pixels();
         }
         let cover = covered as f64 / curved as f64;
-        println!("{sensor}: F {f:.3}, {:.1} % of the curved pixels covered", 100.0 * cover);
+        off.sort_by(f64::total_cmp);
+        let median = off[off.len() / 2];
+        println!(
+            "{sensor}: F {f:.3}, {:.1} % of the curved pixels covered, median error of {} normals {median:.3} degrees",
+            100.0 * cover,
+            off.len()
+        );
+        assert!(median < 0.5, "{sensor}: {median} degrees");
         assert!(f >= least, "{sensor}: F {f}");
         assert!(cover < most_cover, "{sensor}: {cover} of the curved pixels covered");
     }

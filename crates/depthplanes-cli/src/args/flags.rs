@@ -177,7 +177,8 @@ pub(super) fn number(id: &'static str, value: &'static str) -> Arg {
     Arg::new(id).value_name(value).allow_hyphen_values(true).value_parser(parse_number)
 }
 
-fn numbers<const N: usize>(id: &'static str, value: &'static str) -> Arg {
+/// A flag that takes several numbers with commas between.
+pub(super) fn numbers<const N: usize>(id: &'static str, value: &'static str) -> Arg {
     Arg::new(id).value_name(value).allow_hyphen_values(true).value_parser(|text: &str| {
         let parts = text.split(',').map(parse_number).collect::<Result<Vec<f64>, _>>()?;
         let given = parts.len();

@@ -27,6 +27,7 @@ pub(super) fn run(folder: &Path, out: &mut dyn Write) -> Outcome {
         method: recipe.method,
         parameters: &recipe.values,
         detection: &found.detection,
+        coplanar: None,
         outlines: None,
         times: None,
         legend: true,

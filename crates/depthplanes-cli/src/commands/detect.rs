@@ -14,9 +14,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
-    let recipe = Recipe::new(wanted.method, &wanted.parameters, wanted.threads)?
-        .outlines(wanted.outlines)?
-        .curved(wanted.curved || wanted.outputs.iter().any(|(output, _)| output.needs_curved))?;
+    let recipe = Recipe::new(wanted.method, &wanted.parameters, wanted.threads)?;
+    let recipe = recipe.outlines(wanted.outlines)?.merge_coplanar(wanted.merge_coplanar)?;
+    let recipe = recipe.curved(wanted.curved || wanted.outputs.iter().any(|(output, _)| output.needs_curved))?;
     let inputs = inputs::expand(&wanted.inputs)?;
     check_outputs(wanted, &inputs)?;
     let mut options = load::options(&wanted.reading)?;
@@ -65,6 +65,7 @@ impl Plan<'_> {
             method: self.recipe.method,
             parameters: &self.recipe.values,
             detection: &found.detection,
+            coplanar: self.recipe.coplanar,
             outlines: found.outlines.as_ref(),
             times: found.times.as_ref(),
             legend: self.wanted.legend,

@@ -23,7 +23,7 @@ mod shade;
 
 use depthplanes::methods::MethodInfo;
 use depthplanes::outline::Outlines;
-use depthplanes::{Detection, Intrinsics, Measure};
+use depthplanes::{Coplanar, Detection, Intrinsics, Measure};
 use std::path::Path;
 
 use crate::Frame;
@@ -79,6 +79,8 @@ pub struct Report<'a> {
     pub parameters: &'a [f64],
     /// What it found.
     pub detection: &'a Detection,
+    /// Within what coplanar planes were joined, if they were.
+    pub coplanar: Option<Coplanar>,
     /// The planes' outlines, if they are to be in the record and on the picture.
     pub outlines: Option<&'a Outlines>,
     /// How long it took, if that was measured.

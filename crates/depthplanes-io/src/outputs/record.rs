@@ -4,8 +4,7 @@ use super::outline::OutlineRecord;
 use super::{Report, Spread, Times};
 use depthplanes::detection::{CurvedRegion, PixelBox};
 use depthplanes::methods::ParamKind;
-use depthplanes::outline::Outlines;
-use depthplanes::{CovarianceSource, Intrinsics, Measure, Plane};
+use depthplanes::{Coplanar, CovarianceSource, Intrinsics, Measure, Plane};
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
@@ -30,6 +29,8 @@ pub(super) struct FrameRecord<'a> {
     labelled_pixels: usize,
     labelled_share: f64,
     warnings: &'a [String],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    merge_coplanar: Option<CoplanarRecord>,
     #[serde(skip_serializing_if = "Option::is_none")]
     outline_tolerance_px: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -56,6 +57,12 @@ struct IntrinsicsRecord {
 }
 
 #[derive(Serialize)]
+struct CoplanarRecord {
+    angle_deg: f64,
+    distance_m: f64,
+}
+
+#[derive(Serialize)]
 struct PlaneRecord {
     label: u16,
     pixel_count: usize,
@@ -66,6 +73,8 @@ struct PlaneRecord {
     metric: Option<MetricRecord>,
     #[serde(skip_serializing_if = "Option::is_none")]
     outline: Option<OutlineRecord>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    parts: Vec<PlaneRecord>,
 }
 
 #[derive(Serialize)]
@@ -122,9 +131,10 @@ impl<'a> From<&Report<'a>> for FrameRecord<'a> {
             labelled_pixels: detection.labelled_pixels(),
             labelled_share: detection.labelled_share(),
             warnings: &frame.warnings,
+            merge_coplanar: report.coplanar.map(CoplanarRecord::from),
             outline_tolerance_px: report.outlines.map(|outlines| outlines.tolerance_px()),
             time_ms: report.times.map(times),
-            planes: detection.planes.iter().map(|plane| PlaneRecord::new(plane, report.outlines)).collect(),
+            planes: detection.planes.iter().map(|plane| PlaneRecord::with_all(plane, report)).collect(),
             curved: detection.curved.as_ref().map(|curved| curved.regions.iter().map(CurvedRecord::from).collect()),
         }
     }
@@ -166,8 +176,21 @@ impl From<Intrinsics> for IntrinsicsRecord {
     }
 }
 
+impl From<Coplanar> for CoplanarRecord {
+    fn from(within: Coplanar) -> Self {
+        CoplanarRecord { angle_deg: within.angle_deg, distance_m: within.distance_m }
+    }
+}
+
 impl PlaneRecord {
-    fn new(plane: &Plane, outlines: Option<&Outlines>) -> Self {
+    /// With its outline and its parts.
+    fn with_all(plane: &Plane, report: &Report<'_>) -> Self {
+        let outline = report.outlines.and_then(|outlines| outlines.get(plane.label)).map(OutlineRecord::from);
+        let parts = report.detection.parts_of(plane.label).iter().map(|part| PlaneRecord::new(&part.plane)).collect();
+        PlaneRecord { outline, parts, ..PlaneRecord::new(plane) }
+    }
+
+    fn new(plane: &Plane) -> Self {
         PlaneRecord {
             label: plane.label,
             pixel_count: plane.pixel_count,
@@ -187,7 +210,8 @@ impl PlaneRecord {
                     CovarianceSource::Residuals => "residuals",
                 },
             }),
-            outline: outlines.and_then(|outlines| outlines.get(plane.label)).map(OutlineRecord::from),
+            outline: None,
+            parts: Vec::new(),
         }
     }
 }

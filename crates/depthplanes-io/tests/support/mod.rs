@@ -44,15 +44,8 @@ pub fn detection() -> Detection {
     };
     let labels: Vec<u16> = (0..WIDTH * HEIGHT).map(label).collect();
     let planes = (1..=3).map(|label| plane(label, &labels)).collect();
-    Detection {
-        width: WIDTH,
-        height: HEIGHT,
-        labels,
-        planes,
-        valid_pixels: WIDTH * HEIGHT - 28,
-        filled_pixels: 0,
-        curved: None,
-    }
+    let valid_pixels = WIDTH * HEIGHT - 28;
+    Detection { width: WIDTH, height: HEIGHT, labels, planes, valid_pixels, ..Detection::default() }
 }
 
 fn plane(label: u16, labels: &[u16]) -> Plane {
@@ -91,6 +84,7 @@ pub fn report<'a>(frame: &'a Frame, detection: &'a Detection) -> Report<'a> {
         method: depthplanes::methods::find("ngaf").unwrap(),
         parameters: &[1.5, 32.0, 0.0],
         detection,
+        coplanar: None,
         outlines: None,
         times: None,
         legend: false,

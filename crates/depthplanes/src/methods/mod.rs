@@ -4,9 +4,11 @@
 
 mod ngaf;
 mod planar;
+mod records;
 mod tries;
 
 use crate::camera::Sensor;
+use crate::coplanar::Joiner;
 use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::explanation::{Explanation, Verdict};
@@ -99,7 +101,7 @@ pub trait Method: Send {
     /// Finds planes. `job.done(stage)` is called as each stage ends.
     ///
     /// # Errors
-    /// [`Error::TooManyPlanes`].
+    /// [`Error::TooManyPlanes`]; [`Error::NotMetric`] for a parameter in metres without a camera.
     fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()>;
 
     /// Says what its stages see at a pixel of the map, and what would give it a plane. A method that does not
@@ -123,6 +125,8 @@ pub struct Job<'a> {
     pub threads: usize,
     /// Whether surfaces that bend are wanted as well, of methods that tell them.
     pub curved: bool,
+    /// Joins coplanar planes, if that is wanted.
+    pub joiner: Option<&'a mut Joiner>,
     /// Told the name of each stage as it ends.
     pub observer: &'a mut dyn FnMut(&'static str),
 }

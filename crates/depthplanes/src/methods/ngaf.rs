@@ -8,6 +8,7 @@
 
 mod explain;
 
+use super::records::Records;
 use super::{Job, Method, MethodInfo, Param, ParamKind};
 use crate::describe::{Describer, Seen, Tally};
 use crate::detection::Detection;
@@ -244,6 +245,8 @@ impl Runner {
             .and_then(|noise| NoiseModel::new(job.sensor.measure, noise, if T::IS_INTEGER { 1.0 } else { 0.0 }));
         let seen = Seen { sensor: &job.sensor, noise: noise.as_ref(), valid_pixels: valid };
         describer.describe(&map, runs, &seen, &mut out.planes);
+        let mut records = Records { map: &map, groups, margin: params.margin, seen, selection, describer };
+        records.join(job.joiner.as_deref_mut(), out);
         job.done("fit");
         selection.paint(groups, &mut out.labels);
         (out.width, out.height) = (map.width(), map.height());

@@ -37,7 +37,7 @@ impl Tries<'_> {
         }
         let mut method = (self.info.build)(&values).ok()?;
         let mut found = Detection::default();
-        let mut job = Job { sensor: self.sensor, threads: 1, curved: false, observer: &mut |_| () };
+        let mut job = Job { sensor: self.sensor, threads: 1, curved: false, joiner: None, observer: &mut |_| () };
         method.run(self.map, &mut job, &mut found).ok()?;
         let label = found.labels[self.at[1] * found.width + self.at[0]];
         let plane = found.planes.get(usize::from(label.checked_sub(1)?))?;
@@ -67,13 +67,22 @@ fn floored(value: f64) -> f64 {
 
 /// Not below, of two digits.
 pub(super) fn rounded_up(value: f64) -> f64 {
+    rounded(value, |number| (number - 1e-9).ceil())
+}
+
+/// Not above, of two digits.
+pub(super) fn rounded_down(value: f64) -> f64 {
+    rounded(value, |number| (number + 1e-9).floor())
+}
+
+fn rounded(value: f64, to_whole: impl Fn(f64) -> f64) -> f64 {
     if !(value > 0.0 && value.is_finite()) {
         return value;
     }
     let digits = 1 - value.log10().floor() as i32;
     // Through text, so that 0.3 is 0.3 and not 0.30000000000000004.
-    let up = (value * 10f64.powi(digits) - 1e-9).ceil() / 10f64.powi(digits);
-    format!("{up:.*}", digits.max(0) as usize).parse().unwrap_or(up)
+    let number = to_whole(value * 10f64.powi(digits)) / 10f64.powi(digits);
+    format!("{number:.*}", digits.max(0) as usize).parse().unwrap_or(number)
 }
 
 #[cfg(test)]

@@ -8,14 +8,14 @@ use super::curved::Sign;
 use super::grow::{LEAST, Region};
 use super::planes::Planes;
 use super::tiles::{Grid, NONE};
-use super::{INFO, Moment, Runner};
+use super::{INFO, Moment, Planar, Runner};
 use crate::camera::{Hessian, Measure, Sensor};
 use crate::detection::Detection;
 use crate::error::Result;
 use crate::explanation::{Explanation, Finding, Limit, Verdict};
 use crate::map::AnyView;
-use crate::methods::Job;
-use crate::methods::tries::{Change, Tries, rounded_up, smaller_min};
+use crate::methods::tries::{Change, Tries, rounded_down, rounded_up, smaller_min};
+use crate::methods::{Job, Method};
 use crate::noise::{NoiseModel, Space};
 use crate::with_view;
 
@@ -35,12 +35,23 @@ pub(super) fn explain(runner: &mut Runner, map: AnyView<'_>, job: &mut Job<'_>, 
     let value = with_view!(map, map => map.row(at[1])[at[0]].into());
     seen.conclude(runner, &out);
     let verdict = seen.verdict(runner, &out);
+    let verdict = if seen.is_dropped(&out) { dropped(runner, map, job, at)? } else { verdict };
     let mut findings = vec![seen.pixel(value)];
     findings.append(&mut seen.findings);
     let values = runner.params.values();
     let tries = Tries { info: &INFO, values: &values, map, sensor: job.sensor, at, planes: out.planes.len() };
     let suggestions = seen.changes(&verdict, runner).into_iter().filter_map(|changes| tries.first(changes)).collect();
     Ok(Explanation { at, method: INFO.name, findings, verdict, suggestions })
+}
+
+/// Which of the conditions on whole planes drops that of a pixel: its area.
+fn dropped(run: &Runner, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) -> Result<Verdict> {
+    let mut method: Box<dyn Method> = Planar { min_area: 0.0, ..run.params }.try_into()?;
+    let mut all = Detection::default();
+    method.run(map, job, &mut all)?;
+    let plane = all.labels[at[1] * all.width + at[0]].checked_sub(1).map(|index| &all.planes[usize::from(index)]);
+    let area = plane.and_then(|plane| plane.metric.as_ref()?.area_m2).unwrap_or(0.0);
+    Ok(Verdict::Dropped { parameter: "min-area", value: area, limit: Limit::AtLeast(run.params.min_area) })
 }
 
 /// What happened to the region that a pixel's tile went to.
@@ -87,6 +98,7 @@ struct Seen {
     assigned: u16,
     /// Pixels of the connected piece it is in.
     piece: usize,
+    is_large: bool,
     noise: Option<NoiseModel>,
 }
 
@@ -104,6 +116,7 @@ impl Seen {
             most: 0.0,
             assigned: 0,
             piece: 0,
+            is_large: false,
             noise: None,
         }
     }
@@ -331,7 +344,8 @@ impl Seen {
             }
         });
         let is_kept = self.piece > run.params.min as usize;
-        let finding = Finding::new("group", "its connected piece", if is_kept { "a plane" } else { "too small" });
+        self.is_large = is_kept;
+        let finding = Finding::new("group", "its connected piece", if is_kept { "large enough" } else { "too small" });
         let limit = Limit::MoreThan(run.params.min.into());
         self.findings.push(finding.with("pixels", self.piece as f64, "").limit(limit).refusing(!is_kept));
     }
@@ -366,6 +380,11 @@ impl Seen {
         }
     }
 
+    /// Whether its piece is large enough and has no label all the same.
+    fn is_dropped(&self, out: &Detection) -> bool {
+        self.is_large && out.labels[self.at[1] * out.width + self.at[0]] == 0
+    }
+
     /// Changes worth trying, a list for each parameter.
     fn changes(&self, verdict: &Verdict, run: &Runner) -> Vec<Vec<Change>> {
         let confidence = run.params.confidence;
@@ -382,6 +401,10 @@ impl Seen {
                     self.confidences(confidence),
                     self.noises(1.2),
                 ]
+            }
+            Verdict::Dropped { parameter, value, .. } => {
+                let smaller = [0.99 * value, 0.0].map(|value| vec![(parameter, rounded_down(value))]);
+                vec![smaller.to_vec()]
             }
             // Sensors bend walls a little; a ball is bent by much more.
             Verdict::Curved => self.bow.filter(|bow| *bow < SLIGHT).map(|bow| self.noises(bow)).into_iter().collect(),

@@ -16,6 +16,7 @@ mod merge;
 mod planes;
 mod tiles;
 
+use super::records::Records;
 use super::{Job, Method, MethodInfo, Param, ParamKind};
 use crate::camera::Sensor;
 use crate::describe::{Describer, Seen};
@@ -61,6 +62,16 @@ const PARAMS: &[Param] = &[
         source: None,
     },
     Param {
+        name: "min-area",
+        default: 0.0,
+        min: 0.0,
+        max: f64::MAX,
+        kind: ParamKind::Real,
+        unit: "m2",
+        meaning: "A plane has at least this area; needs unit and camera; 0 for off.",
+        source: None,
+    },
+    Param {
         name: "noise",
         default: 0.0,
         min: 0.0,
@@ -97,6 +108,8 @@ const PARAMS: &[Param] = &[
 pub struct Planar {
     /// A plane has strictly more pixels than this.
     pub min: u32,
+    /// A plane has at least this area ([`crate::detection::MetricPlane::area_m2`]), square metres; 0 for off.
+    pub min_area: f64,
     /// Standard deviation of a pixel: of depth at range 0, metres; of disparity, map units. If this and
     /// `noise_growth` are 0, it is the sensor's ([`crate::Sensor::noise`]), or else estimated from each map.
     pub noise: f64,
@@ -108,15 +121,15 @@ pub struct Planar {
 
 impl Planar {
     fn from_values(values: &[f64]) -> Self {
-        let &[min, noise, noise_growth, confidence] = values else {
+        let &[min, min_area, noise, noise_growth, confidence] = values else {
             panic!("one value for each row of PARAMS");
         };
-        Planar { min: min as u32, noise, noise_growth, confidence }
+        Planar { min: min as u32, min_area, noise, noise_growth, confidence }
     }
 
-    fn values(&self) -> [f64; 4] {
-        let &Planar { min, noise, noise_growth, confidence } = self;
-        [min.into(), noise, noise_growth, confidence]
+    fn values(&self) -> [f64; 5] {
+        let &Planar { min, min_area, noise, noise_growth, confidence } = self;
+        [min.into(), min_area, noise, noise_growth, confidence]
     }
 
     /// Fewest pixels of a region of tiles: a plane has many of its pixels in tiles that it shares with others.
@@ -205,6 +218,9 @@ impl Runner {
         out: &mut Detection,
         watch: &mut Watch<'_>,
     ) -> Result<()> {
+        if self.params.min_area > 0.0 {
+            job.sensor.check_metric("min-area")?;
+        }
         let noise = self.sum_tiles(&map, &job.sensor);
         job.done("tiles");
         self.grow(&noise, watch)?;
@@ -225,6 +241,11 @@ impl Runner {
         describer.tally(&map, runs, 0, &job.sensor);
         let seen = Seen { sensor: &job.sensor, noise: Some(&noise), valid_pixels: field.valid_pixels };
         describer.describe(&map, runs, &seen, &mut out.planes);
+        let mut records = Records { map: &map, groups, margin: 0, seen, selection, describer };
+        records.join(job.joiner.as_deref_mut(), out);
+        if params.min_area > 0.0 {
+            records.drop_smaller(params.min_area, out);
+        }
         job.done("fit");
         selection.paint(groups, &mut out.labels);
         (out.width, out.height) = (map.width(), map.height());

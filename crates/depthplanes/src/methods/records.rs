@@ -1,0 +1,56 @@
+//! What may happen to the records of planes after they were fitted: coplanar ones are joined, small ones dropped.
+//!
+//! In: selected groups and their records. Out: the records that remain, and the selection with their labels, which
+//! stay 1.. by decreasing pixel count.
+
+use crate::coplanar::Joiner;
+use crate::describe::{Describer, Seen};
+use crate::detection::{Detection, Plane};
+use crate::group::Groups;
+use crate::map::{DepthView, Pixel};
+use crate::select::Selection;
+
+/// The planes of a map and all that their records are made of.
+pub(super) struct Records<'a, T> {
+    pub(super) map: &'a DepthView<'a, T>,
+    pub(super) groups: &'a Groups,
+    pub(super) margin: u32,
+    pub(super) seen: Seen<'a>,
+    pub(super) selection: &'a mut Selection,
+    pub(super) describer: &'a mut Describer,
+}
+
+impl<T: Pixel> Records<'_, T> {
+    /// Joins coplanar planes, if that is wanted, and fits their unions anew from all pixels.
+    pub(super) fn join(&mut self, joiner: Option<&mut Joiner>, out: &mut Detection) {
+        let Records { map, groups, margin, seen, selection, describer } = self;
+        let Some(joiner) = joiner else { return };
+        let is_any_joined = joiner.join(&out.planes, selection.runs(groups));
+        joiner.parts(&out.planes, &mut out.parts);
+        if !is_any_joined {
+            return;
+        }
+        selection.relabel(|label| joiner.labels()[usize::from(label) - 1]);
+        let runs = selection.runs(groups);
+        describer.tally(map, runs, *margin, seen.sensor);
+        describer.describe(map, runs, seen, &mut out.planes);
+    }
+
+    /// Drops planes of less than an area in square metres, and those without metres. One that reaches infinity has
+    /// no area and stays.
+    pub(super) fn drop_smaller(&mut self, area_m2: f64, out: &mut Detection) {
+        let is_large = |plane: &Plane| {
+            let metric = plane.metric.as_ref();
+            metric.is_some_and(|metric| metric.area_m2.is_none_or(|area| area >= area_m2))
+        };
+        let mut labels = 1..;
+        for plane in &mut out.planes {
+            plane.label = if is_large(plane) { labels.next().expect("no more than before") } else { 0 };
+        }
+        let new = |label: u16| out.planes[usize::from(label) - 1].label;
+        self.selection.relabel(new);
+        out.parts.iter_mut().for_each(|part| part.of = new(part.of));
+        out.parts.retain(|part| part.of > 0);
+        out.planes.retain(|plane| plane.label > 0);
+    }
+}
