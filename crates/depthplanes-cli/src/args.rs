@@ -21,6 +21,7 @@ pub(crate) use flags::Reading;
 /// What the user wants.
 pub(crate) enum Command {
     Detect(Box<Detect>),
+    Explain(Box<Explain>),
     Inspect { inputs: Vec<OsString>, reading: Box<Reading>, json: bool },
     Noise { inputs: Vec<OsString>, reading: Box<Reading>, json: bool },
     Score(Score),
@@ -49,11 +50,24 @@ pub(crate) struct Detect {
     pub(crate) merge_coplanar: Option<[f64; 2]>,
     /// Tolerance of the planes' outlines, pixels, if they are wanted.
     pub(crate) outlines: Option<f64>,
+    /// Whether surfaces that bend are wanted as well.
+    pub(crate) curved: bool,
     pub(crate) json: bool,
     pub(crate) rows: usize,
     pub(crate) repeat: usize,
     pub(crate) jobs: usize,
     pub(crate) threads: usize,
+}
+
+/// `depthplanes explain`.
+pub(crate) struct Explain {
+    pub(crate) input: OsString,
+    pub(crate) at: [usize; 2],
+    pub(crate) reading: Reading,
+    pub(crate) method: &'static MethodInfo,
+    pub(crate) parameters: Vec<(&'static str, f64)>,
+    pub(crate) noise_table: Option<PathBuf>,
+    pub(crate) json: bool,
 }
 
 /// `depthplanes score`.
@@ -71,6 +85,7 @@ pub(crate) fn parse() -> Command {
     let (name, matches) = matches.subcommand().expect("a command is required");
     match name {
         "detect" => Command::Detect(Box::new(detect(matches))),
+        "explain" => Command::Explain(Box::new(explain(matches))),
         "inspect" => Command::Inspect {
             inputs: inputs(matches),
             reading: Box::new(Reading::from_matches(matches)),
@@ -136,6 +151,7 @@ fn program() -> clap::Command {
         .arg_required_else_help(true)
         .subcommands([
             detect_command(),
+            explain_command(),
             inspect_command(),
             noise_command(),
             score_command(),
@@ -168,6 +184,20 @@ fn detect_command() -> clap::Command {
         .args(running_flags())
 }
 
+fn explain_command() -> clap::Command {
+    let input = Arg::new("input").value_name("INPUT").required(true).value_parser(value_parser!(OsString));
+    clap::Command::new("explain")
+        .about("Says why a pixel belongs to a plane or to none: what each stage saw there, and what to change")
+        .after_help(EXIT_CODES)
+        .arg(input.help("A file, - for standard input, or scene:SPEC for a made-up scene"))
+        .arg(flags::pixel("at").required(true).help("The pixel: column and row, from 0"))
+        .args(flags::reading())
+        .arg(method_arg("method").long("method").default_value(METHODS[0].name).help("How to look for planes"))
+        .args(flags::method_parameters())
+        .arg(flags::noise_table())
+        .arg(flags::switch("json", "Print one JSON document"))
+}
+
 fn output_flags() -> Vec<Arg> {
     let flag = |output: &'static Output| {
         let help = format!("Write the {} ({})", output.about, output.extensions());
@@ -179,6 +209,11 @@ fn output_flags() -> Vec<Arg> {
     all.extend([
         flags::path("out-dir", "DIR").help(out_dir).help_heading("Output"),
         flags::switch("legend", "Put a legend beside the overlay and numbers on its planes").help_heading("Output"),
+        flags::switch(
+            "curved",
+            "Report surfaces that bend as well: in the summary, in the JSON record and hatched on the overlay",
+        )
+        .help_heading("Output"),
         outlines_flag().help_heading("Output"),
         flags::switch("json", "Print the record as JSON; one line for each of several inputs").help_heading("Output"),
         flags::count("rows", "N").default_value("20").help("Planes in the printed table").help_heading("Output"),
@@ -284,11 +319,24 @@ fn detect(matches: &ArgMatches) -> Detect {
         legend: matches.get_flag("legend"),
         merge_coplanar: matches.get_one("merge-coplanar").copied(),
         outlines: matches.get_one("outlines").copied(),
+        curved: matches.get_flag("curved"),
         json: matches.get_flag("json"),
         rows: count("rows"),
         repeat: matches.get_one("repeat").copied().unwrap_or(0),
         jobs: count("jobs"),
         threads: count("threads"),
+    }
+}
+
+fn explain(matches: &ArgMatches) -> Explain {
+    Explain {
+        input: matches.get_one::<OsString>("input").cloned().expect("it is required"),
+        at: *matches.get_one("at").expect("it is required"),
+        reading: Reading::from_matches(matches),
+        method: method(matches).expect("it has a default"),
+        parameters: flags::parameters_given(matches),
+        noise_table: path(matches, "noise-table"),
+        json: matches.get_flag("json"),
     }
 }
 

@@ -1,7 +1,7 @@
 //! One map through the pipeline: which method with which parameters, and how long it takes.
 
 use crate::failure::{Failure, Outcome};
-use depthplanes::methods::MethodInfo;
+use depthplanes::methods::{METHODS, MethodInfo};
 use depthplanes::outline::{Outliner, Outlines};
 use depthplanes::{AnyView, Coplanar, Detection, Detector, Sensor};
 use depthplanes_io::Frame;
@@ -20,6 +20,7 @@ pub(crate) struct Recipe {
     pub(crate) coplanar: Option<Coplanar>,
     /// Tolerance of the planes' outlines, pixels, if they are wanted.
     outlines: Option<f64>,
+    curved: bool,
 }
 
 /// What was found in a frame.
@@ -41,7 +42,7 @@ impl Recipe {
             values[at.ok_or_else(|| lacks(method, name))?] = value;
         }
         method.with(given)?;
-        Ok(Recipe { method, values, threads, coplanar: None, outlines: None })
+        Ok(Recipe { method, values, threads, coplanar: None, outlines: None, curved: false })
     }
 
     /// With the planes' outlines, simplified to within so many pixels.
@@ -51,6 +52,25 @@ impl Recipe {
     pub(crate) fn outlines(mut self, tolerance_px: Option<f64>) -> Outcome<Self> {
         self.outlines = tolerance_px;
         self.outliner()?;
+        Ok(self)
+    }
+
+    /// With surfaces that bend.
+    ///
+    /// # Errors
+    /// A method that does not tell them.
+    pub(crate) fn curved(mut self, yes: bool) -> Outcome<Self> {
+        self.curved = yes;
+        if yes && !self.method.tells_curved {
+            let others: Vec<&str> =
+                METHODS.iter().filter(|method| method.tells_curved).map(|method| method.name).collect();
+            let message = format!(
+                "method `{}` does not tell surfaces that bend; --method {} does",
+                self.method.name,
+                others.join(", ")
+            );
+            return Err(Failure::request(message));
+        }
         Ok(self)
     }
 
@@ -67,9 +87,10 @@ impl Recipe {
         Ok(self.outlines.map(Outliner::new).transpose()?)
     }
 
-    fn detector(&self, sensor: Sensor) -> Detector {
+    /// A detector of it for a sensor.
+    pub(crate) fn detector(&self, sensor: Sensor) -> Detector {
         let method = (self.method.build)(&self.values).expect("the parameters were checked");
-        let detector = Detector::from_method(method).threads(self.threads).sensor(sensor);
+        let detector = Detector::from_method(method).threads(self.threads).curved(self.curved).sensor(sensor);
         match self.coplanar {
             Some(within) => detector.merge_coplanar(within).expect("the limits were checked"),
             None => detector,

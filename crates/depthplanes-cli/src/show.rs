@@ -1,7 +1,8 @@
 //! A report for people: what was read, what was found, and what to try if that is little.
 
 use crate::table::{Align, aligned, row};
-use depthplanes::{Measure, Plane};
+use depthplanes::detection::Curved;
+use depthplanes::{Detection, Measure, Plane};
 use depthplanes_io::outputs::{Report, Times};
 
 /// One line on the frame, one on the method and what it found, one on the time if it was measured.
@@ -29,10 +30,23 @@ pub(crate) fn summary(report: &Report<'_>) -> String {
     let whole = if detection.filled_pixels > 0 { "valid and filled pixels" } else { "valid pixels" };
     let share = percent(detection.labelled_share());
     text += &format!("{} ({}): {planes}{joined} on {share} of the {whole}\n", report.method.name, parameters(report));
+    if let Some(curved) = &detection.curved {
+        text += &surfaces(curved, detection);
+    }
     if let Some(times) = report.times {
         text += &time(times);
     }
     text
+}
+
+/// One line on the surfaces that bend.
+fn surfaces(curved: &Curved, detection: &Detection) -> String {
+    let pixels: usize = curved.regions.iter().map(|region| region.pixel_count).sum();
+    let share = percent(pixels as f64 / detection.valid_pixels.max(1) as f64);
+    match curved.regions.len() {
+        1 => format!("1 surface that bends on {share} of the valid pixels\n"),
+        count => format!("{count} surfaces that bend on {share} of the valid pixels\n"),
+    }
 }
 
 fn meaning(measure: Measure) -> String {

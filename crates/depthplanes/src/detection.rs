@@ -20,6 +20,30 @@ pub struct Detection {
     pub valid_pixels: usize,
     /// Missing pixels that enhancing filled (paper, section 3b).
     pub filled_pixels: usize,
+    /// Surfaces that bend, if they were asked for ([`crate::Detector::curved`]) and the method tells them.
+    pub curved: Option<Curved>,
+}
+
+/// Surfaces that bend, which are no planes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curved {
+    /// Row by row, `width * height`: 0 = none, 1.. = `regions[label - 1]`. No pixel has a plane as well.
+    pub labels: Vec<u16>,
+    /// By decreasing pixel count; equal counts by first pixel in raster order.
+    pub regions: Vec<CurvedRegion>,
+}
+
+/// A connected surface that bends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvedRegion {
+    /// Its value in the label image of curved regions, 1..=65535.
+    pub label: u16,
+    /// Pixels that carry the label.
+    pub pixel_count: usize,
+    /// Smallest box around the pixels.
+    pub bounding_box: PixelBox,
+    /// Mean (u, v) of the pixels.
+    pub centroid: [f64; 2],
 }
 
 impl Detection {

@@ -4,6 +4,7 @@ use crate::camera::Sensor;
 use crate::coplanar::{Coplanar, Joiner};
 use crate::detection::Detection;
 use crate::error::{Error, Result};
+use crate::explanation::Explanation;
 use crate::map::AnyView;
 use crate::methods::{Job, Method};
 
@@ -29,6 +30,7 @@ pub struct Detector {
     method: Box<dyn Method>,
     sensor: Sensor,
     threads: usize,
+    curved: bool,
     joiner: Option<Joiner>,
     detection: Detection,
 }
@@ -47,7 +49,14 @@ impl Detector {
 
     /// A detector of a method that was built by name ([`crate::methods::find`]).
     pub fn from_method(method: Box<dyn Method>) -> Self {
-        Detector { method, sensor: Sensor::default(), threads: 1, joiner: None, detection: Detection::default() }
+        Detector {
+            method,
+            sensor: Sensor::default(),
+            threads: 1,
+            curved: false,
+            joiner: None,
+            detection: Detection::default(),
+        }
     }
 
     /// States what the map's numbers mean and which camera saw them; needed for metric planes.
@@ -59,6 +68,13 @@ impl Detector {
     /// Threads for large maps, 1 and up (0 counts as 1). The answer is the same for any number.
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = threads.max(1);
+        self
+    }
+
+    /// Whether to report surfaces that bend as well ([`Detection::curved`]), which costs time. `planar` tells them from
+    /// planes, `ngaf` does not.
+    pub fn curved(mut self, yes: bool) -> Self {
+        self.curved = yes;
         self
     }
 
@@ -96,8 +112,35 @@ impl Detector {
         }
         self.detection.parts.clear();
         let joiner = self.joiner.as_mut();
-        let mut job = Job { sensor: self.sensor, threads: self.threads, joiner, observer };
+        let mut job = Job { sensor: self.sensor, threads: self.threads, curved: self.curved, joiner, observer };
         self.method.run(map.into(), &mut job, &mut self.detection)?;
         Ok(&self.detection)
+    }
+
+    /// Says why the pixel in column `at[0]`, row `at[1]` belongs to a plane or to none: what each stage saw there, and
+    /// which parameters would let it in. Runs the method several times and allocates; [`Detector::detect`] pays
+    /// nothing for it. Coplanar planes are not joined in it.
+    ///
+    /// # Errors
+    /// [`Error::Pixel`] for a pixel outside of the map, and those of [`Detector::detect`].
+    ///
+    /// ```
+    /// use depthplanes::{DepthView, Detector, Planar};
+    /// let wall = [1000u16; 64];
+    /// let mut detector = Detector::new(Planar::default())?;
+    /// let why = detector.explain(DepthView::new(&wall, 8, 8)?, [3, 4])?;
+    /// assert_eq!(why.verdict.kind(), "small"); // 64 pixels, and `min` is 100
+    /// assert_eq!(why.suggestions[0].parameters[0].0, "min");
+    /// # Ok::<(), depthplanes::Error>(())
+    /// ```
+    pub fn explain<'m>(&mut self, map: impl Into<AnyView<'m>>, at: [usize; 2]) -> Result<Explanation> {
+        let map = map.into();
+        let (width, height) = (map.width(), map.height());
+        if at[0] >= width || at[1] >= height {
+            return Err(Error::Pixel { at, width, height });
+        }
+        let mut job =
+            Job { sensor: self.sensor, threads: self.threads, curved: false, joiner: None, observer: &mut |_| () };
+        self.method.explain(map, &mut job, at)
     }
 }

@@ -105,6 +105,15 @@ pub enum Error {
         /// Planes found.
         found: usize,
     },
+    /// A pixel outside of the map.
+    Pixel {
+        /// Column and row given.
+        at: [usize; 2],
+        /// Columns of the map.
+        width: usize,
+        /// Rows of the map.
+        height: usize,
+    },
     /// A truth and a prediction that are not of the same pixels.
     LabelCounts {
         /// Labels of the truth.
@@ -178,6 +187,12 @@ impl fmt::Display for Error {
             Error::TooManyPlanes { found } => write!(
                 f,
                 "{found} planes were found and labels have 16 bits (65535 at most); raise `min` or `theta`, or enhance the map first"
+            ),
+            Error::Pixel { at: [u, v], width, height } => write!(
+                f,
+                "pixel {u},{v} is outside of the map; accepted: columns 0 to {}, rows 0 to {}",
+                width.saturating_sub(1),
+                height.saturating_sub(1)
             ),
             Error::LabelCounts { truth, prediction } => write!(
                 f,

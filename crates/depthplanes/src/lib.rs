@@ -13,6 +13,7 @@ pub mod detection;
 mod detector;
 pub mod enhance;
 pub mod error;
+pub mod explanation;
 pub mod fit;
 pub mod group;
 pub mod map;
@@ -28,6 +29,7 @@ pub use coplanar::Coplanar;
 pub use detection::{CovarianceSource, Detection, Part, Plane};
 pub use detector::Detector;
 pub use error::{Error, Result};
+pub use explanation::Explanation;
 pub use map::{AnyView, DepthView, Pixel};
 pub use methods::{Ngaf, Planar};
 

@@ -155,6 +155,15 @@ pub(super) fn count(id: &'static str, value: &'static str) -> Arg {
     })
 }
 
+/// A flag that takes a pixel.
+pub(super) fn pixel(id: &'static str) -> Arg {
+    Arg::new(id).long(id).value_name("U,V").value_parser(|text: &str| {
+        let parts: Result<Vec<usize>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+        let pixel = parts.ok().and_then(|parts| <[usize; 2]>::try_from(parts).ok());
+        pixel.ok_or_else(|| "accepted: column and row, two whole numbers from 0 with a comma between".to_string())
+    })
+}
+
 /// A flag that takes a plane's label.
 pub(super) fn label(id: &'static str, value: &'static str) -> Arg {
     Arg::new(id).long(id).value_name(value).value_parser(|text: &str| match text.parse::<u16>() {

@@ -35,7 +35,10 @@ pub(super) fn run(folder: &Path, out: &mut dyn Write) -> Outcome {
     make_folder(folder)?;
     let depth = folder.join("depth.png");
     outputs::write_file(&depth, &depth_png(&frame))?;
-    let files: Vec<(&Output, PathBuf)> = OUTPUTS.iter().map(|output| (output, folder.join(output.file))).collect();
+    let files: Vec<(&Output, PathBuf)> = {
+        let possible = OUTPUTS.iter().filter(|output| report.has_what_it_takes(output));
+        possible.map(|output| (output, folder.join(output.file))).collect()
+    };
     outputs::write_all(&report, &files)?;
     tell(&report, &depth, &files, out)
 }

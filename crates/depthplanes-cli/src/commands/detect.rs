@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     let recipe = Recipe::new(wanted.method, &wanted.parameters, wanted.threads)?;
     let recipe = recipe.outlines(wanted.outlines)?.merge_coplanar(wanted.merge_coplanar)?;
+    let recipe = recipe.curved(wanted.curved || wanted.outputs.iter().any(|(output, _)| output.needs_curved))?;
     let inputs = inputs::expand(&wanted.inputs)?;
     check_outputs(wanted, &inputs)?;
     let mut options = load::options(&wanted.reading)?;
@@ -103,7 +104,7 @@ fn write(wanted: &Detect, input: &Input, report: &Report<'_>) -> Outcome<Vec<(&'
     let mut files = wanted.outputs.clone();
     if let Some(folder) = &wanted.out_dir {
         make_folder(folder)?;
-        let possible = OUTPUTS.iter().filter(|output| report.is_metric() || !output.needs_camera);
+        let possible = OUTPUTS.iter().filter(|output| report.has_what_it_takes(output));
         files.extend(possible.map(|output| (output, file_in(folder, input, output))));
     }
     outputs::write_all(report, &files)?;

@@ -12,6 +12,7 @@ pub(super) const OUTPUT: Output = Output {
     about: "point cloud in metres with colours and labels; needs the camera",
     file: "cloud.ply",
     needs_camera: true,
+    needs_curved: false,
     writers: &[Writer { extension: "ply", encode: ply }],
 };
 

@@ -22,6 +22,9 @@ pub enum OutputError {
         /// What is not known, and how to give it.
         missing: &'static str,
     },
+    /// Curved regions that were not looked for.
+    #[error("curved regions were not looked for; ask the detector for them (--curved)")]
+    NeedsCurved,
     /// Two files under one name.
     #[error("{}: {second} would overwrite {first}; give it another name", path.display())]
     SamePath {

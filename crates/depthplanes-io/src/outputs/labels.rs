@@ -11,6 +11,7 @@ pub(super) const OUTPUT: Output = Output {
     about: "label image, 16 bits: 0 = no plane, otherwise the plane's label",
     file: "labels.png",
     needs_camera: false,
+    needs_curved: false,
     writers: &[
         Writer { extension: "png", encode: |report| Ok(png(report.detection)) },
         Writer { extension: "npy", encode: |report| Ok(npy(report.detection)) },
@@ -24,7 +25,11 @@ pub fn png(detection: &Detection) -> Vec<u8> {
 
 /// The label image as a NumPy file, `uint16`, shape `(height, width)`.
 pub fn npy(detection: &Detection) -> Vec<u8> {
-    let shape = format!("({}, {})", detection.height, detection.width);
+    npy_of(detection.width, detection.height, &detection.labels)
+}
+
+pub(super) fn npy_of(width: usize, height: usize, labels: &[u16]) -> Vec<u8> {
+    let shape = format!("({height}, {width})");
     let mut header = format!("{{'descr': '<u2', 'fortran_order': False, 'shape': {shape}, }}");
     // NPY format 1.0: the data start at a multiple of 64; 10 bytes stand before the header, which
     // ends in a line feed.
@@ -35,6 +40,6 @@ pub fn npy(detection: &Detection) -> Vec<u8> {
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
     bytes.extend((header.len() as u16).to_le_bytes());
     bytes.extend(header.into_bytes());
-    bytes.extend(detection.labels.iter().flat_map(|label| label.to_le_bytes()));
+    bytes.extend(labels.iter().flat_map(|label| label.to_le_bytes()));
     bytes
 }

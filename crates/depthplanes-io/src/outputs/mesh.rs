@@ -13,6 +13,7 @@ pub(super) const OUTPUT: Output = Output {
     about: "planes as coloured surfaces with holes, in metres; needs the camera",
     file: "mesh.ply",
     needs_camera: true,
+    needs_curved: false,
     writers: &[Writer { extension: "ply", encode: ply }],
 };
 

@@ -6,6 +6,7 @@
 
 mod cloud;
 mod colour;
+mod curved;
 mod error;
 mod files;
 mod font;
@@ -36,7 +37,8 @@ pub use planes::{CSV_COLUMNS, document as json_document, line as json_line};
 pub use record::SCHEMA;
 
 /// All outputs.
-pub const OUTPUTS: &[Output] = &[labels::OUTPUT, overlay::OUTPUT, planes::OUTPUT, cloud::OUTPUT, mesh::OUTPUT];
+pub const OUTPUTS: &[Output] =
+    &[labels::OUTPUT, overlay::OUTPUT, planes::OUTPUT, cloud::OUTPUT, mesh::OUTPUT, curved::OUTPUT];
 
 /// One row of [`OUTPUTS`].
 #[derive(Debug)]
@@ -49,6 +51,8 @@ pub struct Output {
     pub file: &'static str,
     /// Whether it needs a metric measure and intrinsics.
     pub needs_camera: bool,
+    /// Whether it needs curved regions, which are looked for on request alone.
+    pub needs_curved: bool,
     /// One writer for each extension accepted; the first is the usual one.
     pub writers: &'static [Writer],
 }
@@ -126,6 +130,12 @@ impl Output {
 }
 
 impl Report<'_> {
+    /// Whether an output has all that it needs.
+    pub fn has_what_it_takes(&self, output: &Output) -> bool {
+        let has_curved = self.detection.curved.is_some() || !output.needs_curved;
+        has_curved && (self.is_metric() || !output.needs_camera)
+    }
+
     /// Whether points and planes can be given in metres: the measure is metric and the camera known.
     pub fn is_metric(&self) -> bool {
         self.metric_camera().is_ok()

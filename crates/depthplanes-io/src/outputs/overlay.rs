@@ -11,9 +11,10 @@ use depthplanes::Detection;
 
 pub(super) const OUTPUT: Output = Output {
     name: "overlay",
-    about: "picture: the map in grey, each plane in its colour",
+    about: "picture: the map in grey, each plane in its colour; with --curved, surfaces that bend hatched",
     file: "overlay.png",
     needs_camera: false,
+    needs_curved: false,
     writers: &[Writer { extension: "png", encode: |report| Ok(picture(report)?.png()) }],
 };
 
@@ -27,6 +28,9 @@ fn picture(report: &Report<'_>) -> Result<Picture, OutputError> {
     let pixels = shade::greys(report.frame)?;
     let mut picture = Picture { width: detection.width, height: detection.height, pixels };
     tint_planes(&mut picture, detection, report.outlines.is_none());
+    if let Some(curved) = &detection.curved {
+        hatch_curved(&mut picture, &curved.labels);
+    }
     if let Some(outlines) = report.outlines {
         lines::draw_outlines(&mut picture, outlines);
     }
@@ -35,6 +39,29 @@ fn picture(report: &Report<'_>) -> Result<Picture, OutputError> {
         picture = legend::beside(&picture, detection);
     }
     Ok(picture)
+}
+
+/// Columns and rows from one line of the hatching to the next.
+const HATCH: usize = 6;
+/// Share of the hatching's white.
+const HATCH_SHARE: f32 = 0.6;
+
+/// Slanting lines over the surfaces that bend, and a line around each.
+fn hatch_curved(picture: &mut Picture, labels: &[u16]) {
+    let width = picture.width;
+    for (at, &label) in labels.iter().enumerate().filter(|(_, label)| **label > 0) {
+        let (u, v) = (at % width, at / width);
+        let ends = |beside: Option<&u16>| beside.is_none_or(|&beside| beside != label);
+        let is_edge = u == 0
+            || u + 1 == width
+            || ends(labels.get(at + 1))
+            || ends(labels.get(at + width))
+            || ends(at.checked_sub(1).map(|left| &labels[left]))
+            || ends(at.checked_sub(width).map(|above| &labels[above]));
+        if is_edge || (u + v) % HATCH == 0 {
+            picture.pixels[at] = blend(picture.pixels[at], [255; 3], HATCH_SHARE);
+        }
+    }
 }
 
 fn tint_planes(picture: &mut Picture, detection: &Detection, borders: bool) {

@@ -11,6 +11,7 @@ pub(super) const OUTPUT: Output = Output {
     about: "planes with their equations, as JSON with the whole record or as CSV",
     file: "planes.json",
     needs_camera: false,
+    needs_curved: false,
     writers: &[
         Writer { extension: "json", encode: |report| Ok(document(report).into_bytes()) },
         Writer { extension: "csv", encode: |report| Ok(csv(report).into_bytes()) },

@@ -2,6 +2,7 @@
 
 use super::outline::OutlineRecord;
 use super::{Report, Spread, Times};
+use depthplanes::detection::{CurvedRegion, PixelBox};
 use depthplanes::methods::ParamKind;
 use depthplanes::{Coplanar, CovarianceSource, Intrinsics, Measure, Plane};
 use serde::Serialize;
@@ -35,6 +36,8 @@ pub(super) struct FrameRecord<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     time_ms: Option<Map<String, Value>>,
     planes: Vec<PlaneRecord>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    curved: Option<Vec<CurvedRecord>>,
 }
 
 #[derive(Serialize)]
@@ -72,6 +75,14 @@ struct PlaneRecord {
     outline: Option<OutlineRecord>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     parts: Vec<PlaneRecord>,
+}
+
+#[derive(Serialize)]
+struct CurvedRecord {
+    label: u16,
+    pixel_count: usize,
+    bounding_box: BoxRecord,
+    centroid_px: [f64; 2],
 }
 
 #[derive(Serialize)]
@@ -124,6 +135,7 @@ impl<'a> From<&Report<'a>> for FrameRecord<'a> {
             outline_tolerance_px: report.outlines.map(|outlines| outlines.tolerance_px()),
             time_ms: report.times.map(times),
             planes: detection.planes.iter().map(|plane| PlaneRecord::with_all(plane, report)).collect(),
+            curved: detection.curved.as_ref().map(|curved| curved.regions.iter().map(CurvedRecord::from).collect()),
         }
     }
 }
@@ -179,17 +191,11 @@ impl PlaneRecord {
     }
 
     fn new(plane: &Plane) -> Self {
-        let pixels = plane.bounding_box;
         PlaneRecord {
             label: plane.label,
             pixel_count: plane.pixel_count,
             share_of_valid: plane.share_of_valid,
-            bounding_box: BoxRecord {
-                u_min: pixels.u_min,
-                v_min: pixels.v_min,
-                u_max: pixels.u_max,
-                v_max: pixels.v_max,
-            },
+            bounding_box: plane.bounding_box.into(),
             centroid_px: plane.centroid,
             fit: plane.fit.map(|fit| FitRecord { gradient: fit.gradient, offset: fit.offset, rms: fit.rms }),
             metric: plane.metric.map(|metric| MetricRecord {
@@ -206,6 +212,23 @@ impl PlaneRecord {
             }),
             outline: None,
             parts: Vec::new(),
+        }
+    }
+}
+
+impl From<PixelBox> for BoxRecord {
+    fn from(pixels: PixelBox) -> Self {
+        BoxRecord { u_min: pixels.u_min, v_min: pixels.v_min, u_max: pixels.u_max, v_max: pixels.v_max }
+    }
+}
+
+impl From<&CurvedRegion> for CurvedRecord {
+    fn from(region: &CurvedRegion) -> Self {
+        CurvedRecord {
+            label: region.label,
+            pixel_count: region.pixel_count,
+            bounding_box: region.bounding_box.into(),
+            centroid_px: region.centroid,
         }
     }
 }

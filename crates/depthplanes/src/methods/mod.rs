@@ -5,11 +5,13 @@
 mod ngaf;
 mod planar;
 mod records;
+mod tries;
 
 use crate::camera::Sensor;
 use crate::coplanar::Joiner;
 use crate::detection::Detection;
 use crate::error::{Error, Result};
+use crate::explanation::{Explanation, Verdict};
 use crate::map::AnyView;
 
 pub use ngaf::Ngaf;
@@ -27,6 +29,8 @@ pub struct MethodInfo {
     pub about: &'static str,
     /// Its stages in order, as told to the observer of [`crate::Detector::detect_observed`].
     pub stages: &'static [&'static str],
+    /// Whether it tells surfaces that bend from planes and can report them.
+    pub tells_curved: bool,
     /// Its parameters, in the order of `build`'s values.
     pub params: &'static [Param],
     /// Makes the method from one value for each parameter, in order; [`Error::Parameter`] for one
@@ -99,6 +103,18 @@ pub trait Method: Send {
     /// # Errors
     /// [`Error::TooManyPlanes`]; [`Error::NotMetric`] for a parameter in metres without a camera.
     fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()>;
+
+    /// Says what its stages see at a pixel of the map, and what would give it a plane. A method that does not
+    /// know says only what it found.
+    ///
+    /// # Errors
+    /// As [`Method::run`].
+    fn explain(&mut self, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) -> Result<Explanation> {
+        let mut out = Detection::default();
+        self.run(map, job, &mut out)?;
+        let verdict = Verdict::Unexplained { label: out.labels[at[1] * out.width + at[0]] };
+        Ok(Explanation { at, method: self.info().name, findings: Vec::new(), verdict, suggestions: Vec::new() })
+    }
 }
 
 /// What a method needs beside the map.
@@ -107,6 +123,8 @@ pub struct Job<'a> {
     pub sensor: Sensor,
     /// Threads to use, 1 and up; the answer does not depend on it.
     pub threads: usize,
+    /// Whether surfaces that bend are wanted as well, of methods that tell them.
+    pub curved: bool,
     /// Joins coplanar planes, if that is wanted.
     pub joiner: Option<&'a mut Joiner>,
     /// Told the name of each stage as it ends.

@@ -6,13 +6,16 @@
 //! whose steps exceed theta falls into bands, a ball counts as a plane. Where that matters, use a
 //! method that fits planes.
 
+mod explain;
+
 use super::records::Records;
 use super::{Job, Method, MethodInfo, Param, ParamKind};
 use crate::describe::{Describer, Seen, Tally};
 use crate::detection::Detection;
 use crate::enhance::{self, Enhancer};
 use crate::error::{Error, Result};
-use crate::group::{Grouper, LinkRule};
+use crate::explanation::Explanation;
+use crate::group::{Grouper, Groups, LinkRule};
 use crate::map::{AnyView, DepthView, Pixel};
 use crate::noise::NoiseModel;
 use crate::select::Selection;
@@ -22,6 +25,7 @@ pub(super) static INFO: MethodInfo = MethodInfo {
     name: "ngaf",
     about: "Groups neighbours whose values differ by at most theta; a group of more than `min` pixels is a plane (Hoa, Minh, Dung 2017).",
     stages: &["enhance", "group", "select", "fit", "label"],
+    tells_curved: false,
     params: PARAMS,
     build: |values| {
         INFO.check(values)?; // before any of them becomes a whole number
@@ -181,13 +185,39 @@ impl Method for Runner {
     }
 
     fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        with_view!(map, map => self.ngaf(map, job, out))
+        with_view!(map, map => self.ngaf(map, job, out, &mut ()))
     }
+
+    fn explain(&mut self, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) -> Result<Explanation> {
+        explain::explain(self, map, job, at)
+    }
+}
+
+/// Told of a run as it goes on.
+trait Watch {
+    /// Large groups are selected from the map as it was grouped.
+    fn selected<T: Pixel>(&mut self, map: &DepthView<'_, T>, groups: &Groups, selection: &Selection);
+
+    /// They are described; our own conditions have dropped none yet.
+    fn described(&mut self, tallies: &[Tally]);
+}
+
+/// Nobody looks.
+impl Watch for () {
+    fn selected<T: Pixel>(&mut self, _: &DepthView<'_, T>, _: &Groups, _: &Selection) {}
+
+    fn described(&mut self, _: &[Tally]) {}
 }
 
 impl Runner {
     /// Section 3, stage by stage.
-    fn ngaf<T: Pixel>(&mut self, map: DepthView<'_, T>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
+    fn ngaf<T: Pixel>(
+        &mut self,
+        map: DepthView<'_, T>,
+        job: &mut Job<'_>,
+        out: &mut Detection,
+        watch: &mut impl Watch,
+    ) -> Result<()> {
         let Runner { params, enhancer, grouper, selection, describer } = self;
         let (map, filled_pixels) = match params.window {
             0 => (map, 0),
@@ -199,8 +229,10 @@ impl Runner {
         job.done("group");
         selection.select(groups, params.min)?; // section 3d
         job.done("select");
+        watch.selected(&map, groups, selection);
         let mut runs = selection.runs(groups);
         describer.tally(&map, runs, params.margin, &job.sensor);
+        watch.described(describer.tallies());
         if params.has_conditions() {
             selection.retain(groups, |index| params.accepts(&describer.tallies()[index]));
             describer.retain(|tally| params.accepts(tally));

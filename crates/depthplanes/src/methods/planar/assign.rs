@@ -122,6 +122,31 @@ const NUMBERS: [f32; STRETCH * BLOCK] = {
     numbers
 };
 
+/// The planes that a pixel is held against: the regions' numbers, and the middle of its block, which decides on the
+/// noise.
+pub(super) struct Held {
+    pub(super) ids: Vec<u32>,
+    pub(super) middle: [f64; 2],
+    /// How much further off than elsewhere it may lie.
+    pub(super) factor: f64,
+}
+
+/// Which planes [`assign`] holds the pixel in column `u`, row `v` against.
+pub(super) fn held_against(grids: [&Grid; 2], [u, v]: [usize; 2]) -> Held {
+    let [column, row] = [u / BLOCK, v / BLOCK];
+    let near = Near::new(grids, column, row);
+    let blocks = grids[1];
+    let rows = row.saturating_sub(1)..(row + 2).min(blocks.rows);
+    let mut around = rows.flat_map(|row| {
+        let columns = column.saturating_sub(1)..(column + 2).min(blocks.columns);
+        &blocks.region[row * blocks.columns + columns.start..row * blocks.columns + columns.end]
+    });
+    let id = blocks.region[row * blocks.columns + column];
+    let is_inside = id != NONE && around.all(|&other| other == id);
+    let middle = [column, row].map(|place| (place * BLOCK) as f64 + HALF);
+    Held { ids: near.ids().to_vec(), middle, factor: if is_inside { INSIDE } else { 1.0 } }
+}
+
 /// The regions of the tiles of a block and of those up to two tiles around it.
 struct Near {
     ids: [u32; MOST],

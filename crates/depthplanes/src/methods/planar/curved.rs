@@ -187,7 +187,21 @@ pub(super) struct Facets {
     pub(super) boxes: Vec<CellBox>,
     /// For each region the coarsest grid that shows its shape.
     levels: Vec<u8>,
-    curved: Vec<bool>,
+    /// For each region what shows that it is a facet of a curved surface, if anything.
+    pub(super) signs: Vec<Option<Sign>>,
+}
+
+/// What shows that a region is a facet of a curved surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sign {
+    /// Its own cells bow.
+    Bow,
+    /// One quadratic runs through it and that neighbour.
+    Joint(u32),
+    /// It is small, and one quadratic runs through it and what is around it.
+    Surroundings,
+    /// It is small and continues a curved neighbour.
+    Continues,
 }
 
 /// What is known of the regions and the map they lie in.
@@ -207,11 +221,11 @@ impl Facets {
         reserve_to(&mut self.bows, cells);
         reserve_to(&mut self.boxes, cells);
         reserve_to(&mut self.levels, cells);
-        reserve_to(&mut self.curved, cells);
+        reserve_to(&mut self.signs, cells);
         pyramid.hand_up();
-        let Facets { sums, bows, boxes, levels, curved } = self;
+        let Facets { sums, bows, boxes, levels, signs } = self;
         find_boxes(&pyramid.grids[0], regions.all.len(), boxes);
-        mark_bowed(pyramid, &regions.all, sums, levels, curved);
+        mark_bowed(pyramid, &regions.all, sums, levels, signs);
         bows.extend(sums.iter().map(Sums::bow));
         let scene = Scene { pyramid, all: &regions.all, noise, boxes, levels };
         for pair in pairs.iter().filter(|pair| !scene.are_apart(pair)) {
@@ -222,24 +236,42 @@ impl Facets {
                 continue;
             }
             if let Some(seen) = scene.joint(small, |id| id == large).is_smooth() {
-                curved[small as usize] = true;
-                curved[large as usize] |= 2.0 * seen >= regions.all[large as usize].sums.n;
+                signs[small as usize].get_or_insert(Sign::Joint(large));
+                if 2.0 * seen >= regions.all[large as usize].sums.n {
+                    signs[large as usize].get_or_insert(Sign::Joint(small));
+                }
             }
         }
         for id in (0..regions.all.len()).filter(|&id| regions.all[id].sums.n < SMALL) {
-            curved[id] = curved[id] || scene.surroundings(id as u32).bends();
+            if signs[id].is_none() && scene.surroundings(id as u32).bends() {
+                signs[id] = Some(Sign::Surroundings);
+            }
         }
-        while scene.spread(pairs, curved) {}
-        regions.all.iter_mut().zip(curved).for_each(|(region, curved)| region.is_curved |= *curved);
+        while scene.spread(pairs, signs) {}
+        regions.all.iter_mut().zip(signs).for_each(|(region, sign)| region.is_curved |= sign.is_some());
     }
+}
+
+impl Facets {
+    /// Root mean square of a plane's bow, in noise deviations of a pixel, and the most that is taken for flat; none for
+    /// a region that is too small to tell.
+    pub(super) fn bow(&self, id: u32) -> Option<[f64; 2]> {
+        let (bow, pixels) = (self.bows[id as usize], self.sums[id as usize].pixels);
+        (pixels >= LEAST).then(|| [(bow.max(0.0) / pixels).sqrt(), BOW])
+    }
+}
+
+/// Whether there is a step between two regions where they touch.
+pub(super) fn are_apart(all: &[Region], noise: &NoiseModel, pair: &Pair) -> bool {
+    let [u, v] = pair.middle();
+    let [a, b] = pair.ids.map(|id| all[id as usize].at(u, v));
+    (a - b).powi(2) > STEP * STEP * noise.variance((a + b) / 2.0)
 }
 
 impl Scene<'_> {
     /// Whether there is a step between two regions where they touch.
     fn are_apart(&self, pair: &Pair) -> bool {
-        let [u, v] = pair.middle();
-        let [a, b] = pair.ids.map(|id| self.all[id as usize].at(u, v));
-        (a - b).powi(2) > STEP * STEP * self.noise.variance((a + b) / 2.0)
+        are_apart(self.all, self.noise, pair)
     }
 
     /// Whether two planes part so fast that no quadratic follows both.
@@ -251,14 +283,16 @@ impl Scene<'_> {
     }
 
     /// Marks small regions that continue curved ones; whether there were any.
-    fn spread(&self, pairs: &[Pair], curved: &mut [bool]) -> bool {
+    fn spread(&self, pairs: &[Pair], signs: &mut [Option<Sign>]) -> bool {
         let mut any = false;
         for pair in pairs {
             let [a, b] = pair.ids.map(|id| id as usize);
             for (small, other) in [(a, b), (b, a)] {
-                if curved[other] && !curved[small] && self.all[small].sums.n < LEAST && !self.are_apart(pair) {
-                    curved[small] = self.joint(small as u32, |id| curved[id as usize]).continues();
-                    any |= curved[small];
+                let may_continue = signs[other].is_some() && signs[small].is_none() && self.all[small].sums.n < LEAST;
+                let continues = || self.joint(small as u32, |id| signs[id as usize].is_some()).continues();
+                if may_continue && !self.are_apart(pair) && continues() {
+                    signs[small] = Some(Sign::Continues);
+                    any = true;
                 }
             }
         }
@@ -383,10 +417,16 @@ fn find_boxes(grid: &Grid, regions: usize, boxes: &mut Vec<CellBox>) {
 
 /// Marks regions whose cell means follow a quadratic by more than [`BOW`], each on the coarsest grid where it has
 /// plenty of cells.
-fn mark_bowed(pyramid: &Pyramid, all: &[Region], sums: &mut Vec<Sums>, levels: &mut Vec<u8>, curved: &mut Vec<bool>) {
+fn mark_bowed(
+    pyramid: &Pyramid,
+    all: &[Region],
+    sums: &mut Vec<Sums>,
+    levels: &mut Vec<u8>,
+    signs: &mut Vec<Option<Sign>>,
+) {
     const OPEN: u8 = u8::MAX;
-    curved.clear();
-    curved.resize(all.len(), false);
+    signs.clear();
+    signs.resize(all.len(), None);
     levels.clear();
     levels.resize(all.len(), OPEN);
     sums.clear();
@@ -403,10 +443,11 @@ fn mark_bowed(pyramid: &Pyramid, all: &[Region], sums: &mut Vec<Sums>, levels: &
                 }
             });
         }
-        for ((sums, seen), curved) in sums.iter().zip(levels.iter_mut()).zip(curved.iter_mut()) {
+        for ((sums, seen), sign) in sums.iter().zip(levels.iter_mut()).zip(signs.iter_mut()) {
             if *seen == OPEN && (sums.cells >= PLENTY || level == 0) {
                 *seen = level as u8;
-                *curved = sums.pixels >= LEAST && sums.bow() > BOW * BOW * sums.pixels;
+                let bows = sums.pixels >= LEAST && sums.bow() > BOW * BOW * sums.pixels;
+                *sign = bows.then_some(Sign::Bow);
             }
         }
     }

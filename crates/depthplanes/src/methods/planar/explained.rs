@@ -52,8 +52,22 @@ impl Explainer {
         }
         is_explained.extend((0..planes.regions.len()).map(|id| {
             let others = &larger[id][..counts[id]];
-            !others.is_empty() && is_explained_by(field, grid, planes, id as u32, others, &boxes[id])
+            !others.is_empty() && share_on(field, grid, planes, id as u32, others, &boxes[id]) > EXPLAINED
         }));
+    }
+
+    /// The share of a region's pixels that lies on larger planes beside it, and the most that a plane of its own has;
+    /// none if there is no such plane.
+    pub(super) fn share(
+        &self,
+        field: &Field,
+        grid: &Grid,
+        planes: &Planes<'_>,
+        boxes: &[CellBox],
+        id: u32,
+    ) -> Option<[f64; 2]> {
+        let others = &self.larger[id as usize][..self.counts[id as usize]];
+        (!others.is_empty()).then(|| [share_on(field, grid, planes, id, others, &boxes[id as usize]), EXPLAINED])
     }
 }
 
@@ -68,7 +82,8 @@ fn is_near(own: &Region, larger: &Region) -> bool {
     theirs.squares_about(larger.abc) <= STRIP * STRIP * own.variance
 }
 
-fn is_explained_by(field: &Field, grid: &Grid, planes: &Planes<'_>, id: u32, others: &[u32], around: &CellBox) -> bool {
+/// The share of a region's pixels that lies on other planes, of those that lie on its own.
+fn share_on(field: &Field, grid: &Grid, planes: &Planes<'_>, id: u32, others: &[u32], around: &CellBox) -> f64 {
     let (mut pixels, mut by_others) = (0, 0);
     for row in around.first[1]..=around.last[1] {
         for column in around.first[0]..=around.last[0] {
@@ -89,5 +104,5 @@ fn is_explained_by(field: &Field, grid: &Grid, planes: &Planes<'_>, id: u32, oth
             }
         }
     }
-    f64::from(by_others) > EXPLAINED * f64::from(pixels)
+    f64::from(by_others) / f64::from(pixels.max(1))
 }

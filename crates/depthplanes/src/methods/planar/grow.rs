@@ -16,7 +16,7 @@ const SMALL: f64 = 144.0;
 /// A plane is fitted anew when its region has grown by this factor.
 const REFIT: f64 = 1.125;
 /// Fewest pixels of a cell that starts a region, as a share of all.
-const LEAST: f32 = 0.5;
+pub(super) const LEAST: f32 = 0.5;
 
 /// Cells on one plane.
 #[derive(Clone, Copy, Debug)]

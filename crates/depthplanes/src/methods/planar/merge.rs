@@ -57,12 +57,9 @@ pub(super) struct Merger {
 }
 
 impl Merger {
-    /// Joins neighbouring regions that one plane explains as well as two, the most alike first, and leaves out
-    /// regions of fewer than `least` pixels.
-    ///
-    /// # Errors
-    /// [`Error::TooManyPlanes`] if more are left than a region image can tell apart.
-    pub(super) fn merge(&mut self, grid: &mut Grid, regions: &mut Regions, least: f64) -> Result<()> {
+    /// Joins neighbouring regions that one plane explains as well as two, the most alike first. Those that
+    /// became part of another are still listed.
+    pub(super) fn merge(&mut self, grid: &Grid, regions: &mut Regions) {
         reserve_to(&mut self.pairs, 4 * grid.len());
         for memory in [&mut self.into, &mut self.order] {
             reserve_to(memory, 4 * grid.len());
@@ -71,11 +68,26 @@ impl Merger {
         self.into.extend(0..regions.all.len() as u32);
         self.list_pairs(grid);
         while self.merge_best(&mut regions.all) {}
+    }
+
+    /// Leaves out regions of fewer than `least` pixels, and those that became part of another.
+    ///
+    /// # Errors
+    /// [`Error::TooManyPlanes`] if more are left than a region image can tell apart.
+    pub(super) fn drop_small(&mut self, grid: &mut Grid, regions: &mut Regions, least: f64) -> Result<()> {
         self.drop(grid, regions, |region| region.sums.n < least);
         match regions.all.len() {
             found if found > MAX_PLANES => Err(Error::TooManyPlanes { found }),
             _ => Ok(()),
         }
+    }
+
+    /// The region that one has become part of by now, or itself.
+    pub(super) fn root(&self, mut id: u32) -> u32 {
+        while self.into[id as usize] != id {
+            id = self.into[id as usize];
+        }
+        id
     }
 
     fn list_pairs(&mut self, grid: &Grid) {

@@ -5,7 +5,9 @@
 //! where it is exact: inverse depth or disparity, `q = a u + b v + c`.
 
 mod assign;
+mod bent;
 mod curved;
+mod explain;
 mod explained;
 mod field;
 mod grow;
@@ -20,11 +22,13 @@ use crate::camera::Sensor;
 use crate::describe::{Describer, Seen};
 use crate::detection::Detection;
 use crate::error::{Error, Result};
+use crate::explanation::Explanation;
 use crate::group::{Grouper, LinkRule};
 use crate::map::{AnyView, DepthView, Pixel};
 use crate::noise::{NoiseModel, SensorNoise, Space};
 use crate::select::Selection;
 use crate::with_view;
+use bent::Bent;
 use curved::Facets;
 use explained::Explainer;
 use field::Field;
@@ -38,6 +42,7 @@ pub(super) static INFO: MethodInfo = MethodInfo {
     name: "planar",
     about: "Finds true planes: regions that one plane explains to within the sensor's noise, in inverse depth or disparity.",
     stages: &["tiles", "grow", "judge", "assign", "group", "select", "fit", "label"],
+    tells_curved: true,
     params: PARAMS,
     build: |values| {
         INFO.check(values)?;
@@ -127,6 +132,11 @@ impl Planar {
         [min.into(), min_area, noise, noise_growth, confidence]
     }
 
+    /// Fewest pixels of a region of tiles: a plane has many of its pixels in tiles that it shares with others.
+    fn least(&self) -> f64 {
+        f64::from(self.min) * 0.5
+    }
+
     /// What the parameters say of the noise, if anything.
     fn noise(&self, space: Space) -> Option<SensorNoise> {
         let is_stated = self.noise > 0.0 || (space != Space::Value && self.noise_growth > 0.0);
@@ -164,6 +174,7 @@ struct Runner {
     facets: Facets,
     explainer: Explainer,
     image: Vec<u16>,
+    bent: Bent,
     grouper: Grouper,
     selection: Selection,
     describer: Describer,
@@ -175,22 +186,49 @@ impl Method for Runner {
     }
 
     fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        with_view!(map, map => self.planar(map, job, out))
+        with_view!(map, map => self.planar(map, job, out, &mut |_, _, _| ()))
+    }
+
+    fn explain(&mut self, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) -> Result<Explanation> {
+        explain::explain(self, map, job, at)
     }
 }
 
+/// Places of a run where [`explain`] looks at what there is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Moment {
+    /// Regions have grown.
+    Grown,
+    /// Those that one plane explains are merged, none is dropped yet.
+    Merged,
+    /// It is known which are curved and which are explained by others.
+    Judged,
+    /// Every pixel has its region.
+    Assigned,
+}
+
+/// Told of each moment of a run.
+type Watch<'a> = dyn FnMut(Moment, &Runner, &NoiseModel) + 'a;
+
 impl Runner {
-    fn planar<T: Pixel>(&mut self, map: DepthView<'_, T>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
+    fn planar<T: Pixel>(
+        &mut self,
+        map: DepthView<'_, T>,
+        job: &mut Job<'_>,
+        out: &mut Detection,
+        watch: &mut Watch<'_>,
+    ) -> Result<()> {
         if self.params.min_area > 0.0 {
             job.sensor.check_metric("min-area")?;
         }
         let noise = self.sum_tiles(&map, &job.sensor);
         job.done("tiles");
-        self.grow(&noise)?;
+        self.grow(&noise, watch)?;
         job.done("grow");
-        self.judge(&noise);
+        self.judge(&noise, watch);
         job.done("judge");
-        self.assign(&noise);
+        self.assign(&noise, false);
+        watch(Moment::Assigned, self, &noise);
         job.done("assign");
         let Runner { params, field, image, grouper, selection, describer, .. } = self;
         let ids =
@@ -212,6 +250,7 @@ impl Runner {
         selection.paint(groups, &mut out.labels);
         (out.width, out.height) = (map.width(), map.height());
         (out.valid_pixels, out.filled_pixels) = (field.valid_pixels, 0);
+        out.curved = if job.curved { Some(self.find_bent(&map, job, &noise, out.curved.take())?) } else { None };
         job.done("label");
         Ok(())
     }
@@ -229,32 +268,35 @@ impl Runner {
     }
 
     /// Regions of cells on one plane.
-    fn grow(&mut self, noise: &NoiseModel) -> Result<()> {
-        let Runner { params, pyramid, regions, merger, .. } = self;
-        pyramid.expect(noise, params.confidence);
-        regions.grow(pyramid, params.confidence);
-        merger.merge(&mut pyramid.grids[0], regions, f64::from(params.min) * 0.5)
+    fn grow(&mut self, noise: &NoiseModel, watch: &mut Watch<'_>) -> Result<()> {
+        self.pyramid.expect(noise, self.params.confidence);
+        self.regions.grow(&mut self.pyramid, self.params.confidence);
+        watch(Moment::Grown, self, noise);
+        self.merger.merge(&self.pyramid.grids[0], &mut self.regions);
+        watch(Moment::Merged, self, noise);
+        self.merger.drop_small(&mut self.pyramid.grids[0], &mut self.regions, self.params.least())
     }
 
     /// Which regions are curved, and which are no surface.
-    fn judge(&mut self, noise: &NoiseModel) {
+    fn judge(&mut self, noise: &NoiseModel, watch: &mut Watch<'_>) {
         let Runner { params, field, pyramid, regions, merger, facets, explainer, .. } = self;
         facets.mark(pyramid, regions, &merger.pairs, noise);
-        let grid = &mut pyramid.grids[0];
-        let planes = Planes { regions: &regions.all, noise, confidence: params.confidence };
-        explainer.find(field, grid, &planes, &merger.pairs, &facets.boxes);
+        let planes = Planes { regions: &regions.all, noise, confidence: params.confidence, curved: false };
+        explainer.find(field, &pyramid.grids[0], &planes, &merger.pairs, &facets.boxes);
+        watch(Moment::Judged, self, noise);
+        let Runner { pyramid, regions, merger, explainer, .. } = self;
         let mut explained = explainer.is_explained.iter();
         let is_explained = |_: &grow::Region| explained.next() == Some(&true);
-        merger.drop(grid, regions, is_explained);
+        merger.drop(&mut pyramid.grids[0], regions, is_explained);
     }
 
-    /// The region of every pixel.
-    fn assign(&mut self, noise: &NoiseModel) {
+    /// The region of every pixel: its plane, or its curved region.
+    fn assign(&mut self, noise: &NoiseModel, curved: bool) {
         let Runner { params, field, pyramid, regions, image, .. } = self;
         image.resize(field.q.len(), 0);
         pyramid.hand_up();
         let [tiles, blocks, ..] = &pyramid.grids;
-        let planes = Planes { regions: &regions.all, noise, confidence: params.confidence };
+        let planes = Planes { regions: &regions.all, noise, confidence: params.confidence, curved };
         assign::assign(field, [tiles, blocks], &planes, image);
     }
 }

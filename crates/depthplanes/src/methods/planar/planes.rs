@@ -10,6 +10,8 @@ pub(super) struct Planes<'a> {
     pub(super) noise: &'a NoiseModel,
     /// How far from a plane its pixels may lie, standard deviations.
     pub(super) confidence: f64,
+    /// Whether curved regions have labels, and planes have none.
+    pub(super) curved: bool,
 }
 
 impl Planes<'_> {
@@ -18,10 +20,10 @@ impl Planes<'_> {
         &self.regions[id as usize]
     }
 
-    /// A region's label in the region image; a curved one has none.
+    /// A region's label in the region image, 0 for those that are not wanted.
     #[inline(always)]
     pub(super) fn label(&self, id: u32) -> u16 {
-        if self.region(id).is_curved { 0 } else { id as u16 + 1 }
+        if self.region(id).is_curved == self.curved { id as u16 + 1 } else { 0 }
     }
 
     /// Square of the largest distance from a plane at q.

@@ -1,0 +1,150 @@
+//! `depthplanes explain`: why a pixel of a map belongs to a plane or to none.
+//!
+//! In: one map, as `detect` takes it, and a pixel. Out: what each stage saw there, the verdict and what to change, as
+//! lines or as JSON.
+
+use crate::args::Explain;
+use crate::failure::{Failure, Outcome};
+use crate::inputs::{self, Input};
+use crate::load;
+use crate::run::Recipe;
+use crate::show::significant;
+use depthplanes::Explanation;
+use depthplanes::explanation::{Finding, Limit, Quantity, Suggestion};
+use depthplanes::noise::SensorNoise;
+use depthplanes_io::read_noise_table;
+use serde_json::{Map, Value, json};
+use std::io::Write;
+
+pub(super) fn run(wanted: &Explain, out: &mut dyn Write) -> Outcome {
+    let recipe = Recipe::new(wanted.method, &wanted.parameters, 1)?;
+    let input = only(inputs::expand(std::slice::from_ref(&wanted.input))?)?;
+    let mut options = load::options(&wanted.reading)?;
+    options.noise = wanted.noise_table.as_ref().map(read_noise_table).transpose()?.map(SensorNoise::Table);
+    let name = input.name();
+    let named = |failure: Failure| failure.of_input(&name);
+    let frame = load::frame(&input, &options).map_err(named)?;
+    let why = recipe.detector(frame.sensor).explain(frame.view()?, wanted.at);
+    let why = why.map_err(Failure::from).map_err(named)?;
+    let text = if wanted.json { format!("{:#}\n", record(&name, &recipe, &why)) } else { readable(&name, &why) };
+    out.write_all(text.as_bytes())?;
+    Ok(out.flush()?)
+}
+
+fn only(mut inputs: Vec<Input>) -> Outcome<Input> {
+    match (inputs.pop(), inputs.len()) {
+        (Some(input), 0) => Ok(input),
+        (_, others) => Err(Failure::request(format!("`explain` looks at one map; {} were given", others + 1))),
+    }
+}
+
+fn record(name: &str, recipe: &Recipe, why: &Explanation) -> Value {
+    let parameters = recipe.method.params.iter().zip(&recipe.values);
+    let parameters: Map<String, Value> = parameters.map(|(param, value)| (param.name.into(), json!(value))).collect();
+    json!({
+        "schema": "depthplanes.explain/1",
+        "source": name,
+        "method": why.method,
+        "parameters": parameters,
+        "at": why.at,
+        "findings": why.findings.iter().map(finding_record).collect::<Vec<_>>(),
+        "verdict": {"kind": why.verdict.kind(), "text": why.verdict.to_string()},
+        "suggestions": why.suggestions.iter().map(suggestion_record).collect::<Vec<_>>(),
+    })
+}
+
+fn finding_record(finding: &Finding) -> Value {
+    json!({
+        "stage": finding.stage,
+        "subject": finding.subject,
+        "quantities": finding.quantities.iter().map(quantity_record).collect::<Vec<_>>(),
+        "outcome": finding.outcome,
+        "refuses": finding.refuses,
+    })
+}
+
+fn quantity_record(quantity: &Quantity) -> Value {
+    let mut record = json!({"name": quantity.name, "value": quantity.value, "unit": quantity.unit});
+    if let Some(limit) = quantity.limit {
+        let (kind, bound) = words(limit);
+        record["limit"] = json!({"kind": kind.replace(' ', "_"), "value": bound, "holds": limit.holds(quantity.value)});
+    }
+    record
+}
+
+fn suggestion_record(suggestion: &Suggestion) -> Value {
+    let parameters: Map<String, Value> =
+        suggestion.parameters.iter().map(|&(name, value)| (name.to_string(), json!(value))).collect();
+    json!({
+        "parameters": parameters,
+        "plane_pixels": suggestion.plane_pixels,
+        "planes_before": suggestion.planes_before,
+        "planes_after": suggestion.planes_after,
+    })
+}
+
+fn words(limit: Limit) -> (&'static str, f64) {
+    match limit {
+        Limit::AtMost(most) => ("at most", most),
+        Limit::AtLeast(least) => ("at least", least),
+        Limit::MoreThan(bound) => ("more than", bound),
+    }
+}
+
+/// The findings with the stage in front, then the verdict and what to change.
+fn readable(name: &str, why: &Explanation) -> String {
+    let [u, v] = why.at;
+    let mut text = format!("{name}: column {u}, row {v}, by {}\n", why.method);
+    let has_noise =
+        why.findings.iter().flat_map(|finding| &finding.quantities).any(|of| of.unit == "standard deviations");
+    if has_noise {
+        text += "(sd: standard deviations of the noise expected there; ! refuses)\n";
+    }
+    let width = why.findings.iter().map(|finding| finding.stage.len()).max().unwrap_or(0);
+    let mut last = "";
+    for finding in &why.findings {
+        let stage = if finding.stage == last { "" } else { finding.stage };
+        last = finding.stage;
+        let mark = if finding.refuses { '!' } else { ' ' };
+        text += &format!("{mark} {stage:<width$}  {}\n", sentence(finding));
+    }
+    text += &format!("\n{}\n", why.verdict);
+    for suggestion in &why.suggestions {
+        text += &advice(suggestion);
+    }
+    text
+}
+
+fn sentence(finding: &Finding) -> String {
+    let mut parts: Vec<String> = finding.quantities.iter().map(shown).collect();
+    if !finding.outcome.is_empty() {
+        parts.push(finding.outcome.clone());
+    }
+    format!("{}: {}", finding.subject, parts.join(", "))
+}
+
+fn shown(quantity: &Quantity) -> String {
+    let (value, unit) = match quantity.unit {
+        // Four digits of a noise would say more than is known.
+        "standard deviations" if quantity.value < 1.0 => (format!("{:.2}", quantity.value), " sd"),
+        "standard deviations" => (format!("{:.1}", quantity.value), " sd"),
+        _ => (significant(quantity.value), quantity.unit),
+    };
+    let space = if unit.is_empty() || unit.starts_with(' ') { "" } else { " " };
+    let unit = format!("{space}{unit}");
+    let limit = quantity.limit.map(|limit| {
+        let (kind, bound) = words(limit);
+        format!(" ({kind} {})", significant(bound))
+    });
+    format!("{} {value}{unit}{}", quantity.name, limit.unwrap_or_default())
+}
+
+fn advice(suggestion: &Suggestion) -> String {
+    let flags = suggestion.parameters.iter().map(|(name, value)| format!("--{} {value}", name.replace('_', "-")));
+    let flags: Vec<String> = flags.collect();
+    let Suggestion { plane_pixels, planes_before, planes_after, .. } = suggestion;
+    format!(
+        "Try {}: the pixel is then on a plane of {plane_pixels} pixels ({planes_after} planes in the map, now {planes_before}).\n",
+        flags.join(" ")
+    )
+}

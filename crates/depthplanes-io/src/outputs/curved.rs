@@ -1,0 +1,34 @@
+//! The label image of curved regions: 0 where there is none, otherwise the region's label, 16 bits.
+
+use super::labels::npy_of;
+use super::picture::grey16_png;
+use super::{Output, OutputError, Report, Writer};
+use depthplanes::detection::Curved;
+
+pub(super) const OUTPUT: Output = Output {
+    name: "curved-labels",
+    about: "label image of surfaces that bend, 16 bits: 0 = none, otherwise the region's label; goes with --curved",
+    file: "curved.png",
+    needs_camera: false,
+    needs_curved: true,
+    writers: &[
+        Writer {
+            extension: "png",
+            encode: |report| {
+                let curved = found(report)?;
+                Ok(grey16_png(report.detection.width, report.detection.height, &curved.labels))
+            },
+        },
+        Writer {
+            extension: "npy",
+            encode: |report| {
+                let curved = found(report)?;
+                Ok(npy_of(report.detection.width, report.detection.height, &curved.labels))
+            },
+        },
+    ],
+};
+
+fn found<'a>(report: &Report<'a>) -> Result<&'a Curved, OutputError> {
+    report.detection.curved.as_ref().ok_or(OutputError::NeedsCurved)
+}

@@ -1,0 +1,456 @@
+//! Why a pixel has a plane or none.
+//!
+//! In: a run of the method that is watched at a few moments. Out: an [`Explanation`]. What the stages leave in their
+//! buffers is read as they go; nothing is kept for it in an ordinary run.
+
+use super::assign::{self, Held};
+use super::curved::Sign;
+use super::grow::{LEAST, Region};
+use super::planes::Planes;
+use super::tiles::{Grid, NONE};
+use super::{INFO, Moment, Planar, Runner};
+use crate::camera::{Hessian, Measure, Sensor};
+use crate::detection::Detection;
+use crate::error::Result;
+use crate::explanation::{Explanation, Finding, Limit, Verdict};
+use crate::map::AnyView;
+use crate::methods::tries::{Change, Tries, rounded_down, rounded_up, smaller_min};
+use crate::methods::{Job, Method};
+use crate::noise::{NoiseModel, Space};
+use crate::with_view;
+
+/// Unit of everything that is measured in noise.
+const DEVIATIONS: &str = "standard deviations";
+/// Factors by which the noise or the confidence may be raised for a suggestion; with more, anything is a plane.
+const FACTORS: [f64; 6] = [1.0, 1.2, 1.5, 2.0, 3.0, 4.0];
+/// Bows of less than so many times what is taken for flat may be those of a distorted plane.
+const SLIGHT: f64 = 1.5;
+/// Largest confidence that is suggested: further off, a pixel is on something else.
+const MOST_CONFIDENCE: f64 = 12.0;
+
+pub(super) fn explain(runner: &mut Runner, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) -> Result<Explanation> {
+    let (mut seen, mut out) = (Seen::new(at, job.sensor), Detection::default());
+    let mut watch = |moment: Moment, run: &Runner, noise: &NoiseModel| seen.look(moment, run, noise);
+    with_view!(map, map => runner.planar(map, job, &mut out, &mut watch))?;
+    let value = with_view!(map, map => map.row(at[1])[at[0]].into());
+    seen.conclude(runner, &out);
+    let verdict = seen.verdict(runner, &out);
+    let verdict = if seen.is_dropped(&out) { dropped(runner, map, job, at)? } else { verdict };
+    let mut findings = vec![seen.pixel(value)];
+    findings.append(&mut seen.findings);
+    let values = runner.params.values();
+    let tries = Tries { info: &INFO, values: &values, map, sensor: job.sensor, at, planes: out.planes.len() };
+    let suggestions = seen.changes(&verdict, runner).into_iter().filter_map(|changes| tries.first(changes)).collect();
+    Ok(Explanation { at, method: INFO.name, findings, verdict, suggestions })
+}
+
+/// Which of the conditions on whole planes drops that of a pixel: its area.
+fn dropped(run: &Runner, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) -> Result<Verdict> {
+    let mut method: Box<dyn Method> = Planar { min_area: 0.0, ..run.params }.try_into()?;
+    let mut all = Detection::default();
+    method.run(map, job, &mut all)?;
+    let plane = all.labels[at[1] * all.width + at[0]].checked_sub(1).map(|index| &all.planes[usize::from(index)]);
+    let area = plane.and_then(|plane| plane.metric.as_ref()?.area_m2).unwrap_or(0.0);
+    Ok(Verdict::Dropped { parameter: "min-area", value: area, limit: Limit::AtLeast(run.params.min_area) })
+}
+
+/// What happened to the region that a pixel's tile went to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fate {
+    /// The tile went to none.
+    None,
+    /// Dropped for its size, so many pixels.
+    Small(f64),
+    /// A facet of a curved surface.
+    Curved,
+    /// Its pixels lie on larger planes.
+    Explained,
+    /// It is a plane.
+    Kept,
+}
+
+/// A plane that the pixel was held against.
+#[derive(Clone, Copy, Debug)]
+struct Against {
+    id: u32,
+    /// Standard deviations.
+    off: f64,
+    is_curved: bool,
+    pixels: f64,
+}
+
+/// What was seen of one pixel.
+struct Seen {
+    at: [usize; 2],
+    sensor: Sensor,
+    findings: Vec<Finding>,
+    /// Not a number where nothing was measured.
+    q: f64,
+    /// Valid pixels of its tile, and the tile's roughness.
+    tile: [f64; 2],
+    fate: Fate,
+    /// Its bow as a multiple of what is taken for flat, if that is what makes it curved.
+    bow: Option<f64>,
+    against: Vec<Against>,
+    /// Most that is accepted, standard deviations.
+    most: f64,
+    /// Region image at the pixel.
+    assigned: u16,
+    /// Pixels of the connected piece it is in.
+    piece: usize,
+    is_large: bool,
+    noise: Option<NoiseModel>,
+}
+
+impl Seen {
+    fn new(at: [usize; 2], sensor: Sensor) -> Self {
+        Seen {
+            at,
+            sensor,
+            findings: Vec::new(),
+            q: f64::NAN,
+            tile: [0.0; 2],
+            fate: Fate::None,
+            bow: None,
+            against: Vec::new(),
+            most: 0.0,
+            assigned: 0,
+            piece: 0,
+            is_large: false,
+            noise: None,
+        }
+    }
+
+    fn look(&mut self, moment: Moment, run: &Runner, noise: &NoiseModel) {
+        self.noise = Some(*noise);
+        self.q = run.field.q[self.at[1] * run.field.stride + self.at[0]].into();
+        match moment {
+            Moment::Grown => self.look_at_cells(run),
+            Moment::Merged => self.look_at_region(run),
+            Moment::Judged => self.look_at_judgement(run, noise),
+            Moment::Assigned => self.look_at_planes(run, noise),
+        }
+    }
+
+    /// Index of the cell of a grid that the pixel lies in.
+    fn cell(&self, grid: &Grid) -> usize {
+        self.at[1] / grid.side * grid.columns + self.at[0] / grid.side
+    }
+
+    /// The pixel itself and the noise expected there.
+    fn pixel(&self, value: f64) -> Finding {
+        let finding = Finding::new("map", "the pixel", if self.q.is_nan() { "not measured" } else { "" })
+            .with("value", value, "")
+            .refusing(self.q.is_nan());
+        if self.q.is_nan() {
+            return finding;
+        }
+        let finding = match self.sensor.measure.depth_m(value) {
+            Some(depth) => finding.with("depth", depth, "m"),
+            None => finding,
+        };
+        match self.sensor.measure {
+            Measure::Depth { .. } => finding.with("inverse depth", self.q, "1/m"),
+            _ => finding,
+        }
+    }
+
+    fn look_at_cells(&mut self, run: &Runner) {
+        self.describe_noise(run);
+        for grid in run.pyramid.grids.iter().rev() {
+            let at = self.cell(grid);
+            let (n, least) = (f64::from(grid.pixels(at)), f64::from(LEAST) * (grid.side * grid.side) as f64);
+            let roughness = f64::from(grid.roughness[at]);
+            let first = self.at.map(|place| place / grid.side * grid.side);
+            let [u, v] = first.map(|first| format!("{first}..{}", first + grid.side - 1));
+            let is_flat = roughness <= 1.0;
+            let outcome = match (n >= least, is_flat) {
+                (true, true) => "flat, may start a region",
+                (true, false) => "too rough to start a region",
+                (false, _) => "too few pixels to start a region",
+            };
+            let subject = format!("cell of {0} x {0}, columns {u}, rows {v}", grid.side);
+            let finding = Finding::new("tiles", subject, outcome).with("pixels", n, "").limit(Limit::AtLeast(least));
+            let finding = if n >= 4.0 && roughness.is_finite() {
+                let rms = f64::from(grid.scatter(at)).sqrt();
+                let finding = finding.with("rms about its own plane", rms, DEVIATIONS);
+                finding.with("roughness", roughness, "").limit(Limit::AtMost(1.0))
+            } else {
+                finding
+            };
+            self.tile = [n, roughness];
+            self.findings.push(finding);
+        }
+    }
+
+    fn describe_noise(&mut self, run: &Runner) {
+        let Some(noise) = self.noise.filter(|_| self.q.is_finite()) else { return };
+        let space = Space::of(self.sensor.measure);
+        let is_of_map = |stated| NoiseModel::new(self.sensor.measure, stated, 0.0).is_some();
+        let source = match (run.params.noise(space), self.sensor.noise) {
+            (Some(_), _) => "from the parameters",
+            (None, Some(stated)) if is_of_map(stated) => "the sensor's, from its preset or table",
+            _ => "estimated from the map",
+        };
+        let sigma = noise.variance(self.q).sqrt();
+        let finding = Finding::new("tiles", "noise expected of the pixel", source);
+        let finding = match space {
+            Space::InverseDepth { .. } => finding.with("of depth", 1e3 * sigma / (self.q * self.q), "mm"),
+            Space::Value => finding.with("of the value", sigma, "map units"),
+        };
+        self.findings.push(finding);
+    }
+
+    /// The region of the tile as it grew and was merged, and whether it is large enough.
+    fn look_at_region(&mut self, run: &Runner) {
+        let grid = &run.pyramid.grids[0];
+        let id = grid.region[self.cell(grid)];
+        if id == NONE {
+            self.findings.push(Finding::new("grow", "the tile", "went to no region"));
+            return;
+        }
+        let root = run.merger.root(id);
+        let region = &run.regions.all[root as usize];
+        let merged = (0..run.regions.all.len() as u32).filter(|&other| run.merger.root(other) == root).count();
+        let subject = match merged {
+            1 => "the region of the tile".to_string(),
+            count => format!("the region of the tile, merged of {count}"),
+        };
+        let is_small = region.sums.n < run.params.least();
+        let least = Limit::AtLeast(run.params.least());
+        let finding = Finding::new("grow", subject, if is_small { "dropped, too small" } else { "" })
+            .with("pixels", region.sums.n, "")
+            .limit(least)
+            .with("rms", (region.squares / region.variance).sqrt(), DEVIATIONS)
+            .refusing(is_small);
+        self.findings.push(self.with_plane(finding, region));
+        if is_small {
+            self.fate = Fate::Small(region.sums.n);
+        }
+    }
+
+    /// Adds the plane in metres, where the camera is known.
+    fn with_plane(&self, finding: Finding, region: &Region) -> Finding {
+        let [a, b, _] = region.abc;
+        let c = region.at(0.0, 0.0);
+        let abc = match self.sensor.measure {
+            Measure::Depth { .. } => [a, b, c],
+            Measure::InverseDepth { slope, offset } => [slope * a, slope * b, slope * c + offset],
+            Measure::Disparity => return finding,
+        };
+        match self.sensor.intrinsics.and_then(|camera| Hessian::from_inverse_depth(abc, &camera)) {
+            Some(plane) => {
+                let [x, y, z] = plane.normal;
+                finding
+                    .with("distance", plane.distance, "m")
+                    .with("normal x", x, "")
+                    .with("normal y", y, "")
+                    .with("normal z", z, "")
+            }
+            None => finding,
+        }
+    }
+
+    /// Whether the region is curved or explained by larger planes.
+    fn look_at_judgement(&mut self, run: &Runner, noise: &NoiseModel) {
+        let grid = &run.pyramid.grids[0];
+        let id = grid.region[self.cell(grid)];
+        if id == NONE {
+            return;
+        }
+        let sign = run.facets.signs[id as usize];
+        let outcome = match sign {
+            None => "not curved".to_string(),
+            Some(Sign::Bow) => "curved: it bows".to_string(),
+            Some(Sign::Joint(other)) => {
+                let pixels = run.regions.all[other as usize].sums.n;
+                format!("curved: it runs on smoothly into a neighbour of {pixels} pixels, on one quadratic")
+            }
+            Some(Sign::Surroundings) => "curved: one quadratic runs through it and what is around it".to_string(),
+            Some(Sign::Continues) => "curved: it continues a curved neighbour".to_string(),
+        };
+        let finding = Finding::new("judge", "is it flat?", outcome).refusing(sign.is_some());
+        self.bow = run.facets.bow(id).filter(|_| sign == Some(Sign::Bow)).map(|[bow, most]| bow / most);
+        let finding = match run.facets.bow(id) {
+            Some([bow, most]) => finding.with("bow", bow, DEVIATIONS).limit(Limit::AtMost(most)),
+            None => finding,
+        };
+        self.findings.push(finding);
+        let planes = Planes { regions: &run.regions.all, noise, confidence: run.params.confidence, curved: false };
+        let share = run.explainer.share(&run.field, grid, &planes, &run.facets.boxes, id);
+        let is_explained = run.explainer.is_explained[id as usize];
+        if let Some([share, most]) = share {
+            let outcome = if is_explained { "dropped, no surface of its own" } else { "a surface of its own" };
+            let finding = Finding::new("judge", "its pixels on larger planes beside it", outcome);
+            let finding = finding.with("share", share, "").limit(Limit::AtMost(most));
+            self.findings.push(finding.refusing(is_explained));
+        }
+        self.fate = match (sign, is_explained) {
+            (_, true) => Fate::Explained,
+            (Some(_), _) => Fate::Curved,
+            _ => Fate::Kept,
+        };
+    }
+
+    /// Which planes the pixel is held against, and how far off it is.
+    fn look_at_planes(&mut self, run: &Runner, noise: &NoiseModel) {
+        let [tiles, blocks, ..] = &run.pyramid.grids;
+        let Held { ids, middle, factor } = assign::held_against([tiles, blocks], self.at);
+        let [u, v] = self.at.map(|place| place as f64);
+        self.most = factor * run.params.confidence;
+        self.assigned = run.image[self.at[1] * run.field.stride + self.at[0]];
+        let held = ids.into_iter().map(|id| {
+            let region = &run.regions.all[id as usize];
+            let sigma = noise.variance(region.at(middle[0], middle[1])).sqrt();
+            let off = (self.q - region.at(u, v)).abs() / sigma;
+            Against { id, off, is_curved: region.is_curved, pixels: region.sums.n }
+        });
+        self.against = held.collect();
+        self.against.sort_by(|a, b| a.off.total_cmp(&b.off));
+    }
+
+    /// What the last stages made of it.
+    fn conclude(&mut self, run: &Runner, out: &Detection) {
+        if self.q.is_nan() {
+            return;
+        }
+        if self.against.is_empty() {
+            self.findings.push(Finding::new("assign", "the pixel", "no region within a block of 8 x 8").refusing(true));
+        }
+        for against in &self.against {
+            let label = label_of(run, out, against.id);
+            let name = match (against.is_curved, label) {
+                (true, _) => format!("a curved facet of {} pixels", against.pixels),
+                (false, 0) => format!("a region of {} pixels", against.pixels),
+                (false, label) => format!("plane {label}"),
+            };
+            let outcome = match against.off <= self.most {
+                true if u32::from(self.assigned) == against.id + 1 => "taken",
+                true if against.is_curved => "near, but gives no plane",
+                true => "near, but another goes before it",
+                false => "too far",
+            };
+            let finding = Finding::new("assign", format!("the pixel against {name}"), outcome);
+            self.findings.push(finding.with("off", against.off, DEVIATIONS).limit(Limit::AtMost(self.most)));
+        }
+        if self.assigned == 0 {
+            return;
+        }
+        let groups = run.grouper.groups();
+        let [u, v] = self.at.map(|place| place as u32);
+        groups.each_run(|run| {
+            if run.v == v && (run.u_first..=run.u_last).contains(&u) {
+                self.piece = groups.sizes()[run.group as usize] as usize;
+            }
+        });
+        let is_kept = self.piece > run.params.min as usize;
+        self.is_large = is_kept;
+        let finding = Finding::new("group", "its connected piece", if is_kept { "large enough" } else { "too small" });
+        let limit = Limit::MoreThan(run.params.min.into());
+        self.findings.push(finding.with("pixels", self.piece as f64, "").limit(limit).refusing(!is_kept));
+    }
+
+    fn verdict(&self, run: &Runner, out: &Detection) -> Verdict {
+        let label = out.labels[self.at[1] * out.width + self.at[0]];
+        let [pixels, roughness] = self.tile;
+        let least = f64::from(LEAST) * (run.pyramid.grids[0].side * run.pyramid.grids[0].side) as f64;
+        let nearest = self.against.iter().find(|against| !against.is_curved);
+        let is_on_curved = self.against.first().is_some_and(|against| against.is_curved && against.off <= self.most);
+        if label > 0 {
+            let chosen = self.against.iter().find(|against| against.id + 1 == u32::from(self.assigned));
+            let pixels = out.planes[usize::from(label) - 1].pixel_count;
+            return Verdict::Plane { label, pixels, off: chosen.map(|against| against.off) };
+        }
+        if self.q.is_nan() {
+            return Verdict::NotMeasured;
+        }
+        if self.assigned > 0 {
+            return Verdict::Small { pixels: self.piece, min: run.params.min, early: false };
+        }
+        match (self.fate, nearest) {
+            (Fate::Small(pixels), _) => Verdict::Small { pixels: pixels as usize, min: run.params.min, early: true },
+            (Fate::Curved, _) => Verdict::Curved,
+            (Fate::None, _) if is_on_curved => Verdict::Curved,
+            (Fate::None, _) if pixels < least => Verdict::Sparse { pixels: pixels as usize, least: least as usize },
+            (_, Some(near)) if near.off <= MOST_CONFIDENCE.max(2.0 * self.most) || self.fate != Fate::None => {
+                Verdict::Off { off: near.off, most: self.most, label: label_of(run, out, near.id) }
+            }
+            _ if roughness > 1.0 => Verdict::Uneven { roughness },
+            _ => Verdict::Alone,
+        }
+    }
+
+    /// Whether its piece is large enough and has no label all the same.
+    fn is_dropped(&self, out: &Detection) -> bool {
+        self.is_large && out.labels[self.at[1] * out.width + self.at[0]] == 0
+    }
+
+    /// Changes worth trying, a list for each parameter.
+    fn changes(&self, verdict: &Verdict, run: &Runner) -> Vec<Vec<Change>> {
+        let confidence = run.params.confidence;
+        let nothing = Vec::new;
+        match *verdict {
+            Verdict::Small { pixels, .. } => vec![smaller_min(pixels).collect()],
+            Verdict::Off { off, most, .. } => {
+                let times = off / most;
+                vec![self.confidences(times * confidence), self.noises(times)]
+            }
+            Verdict::Uneven { .. } | Verdict::Alone | Verdict::Sparse { .. } => {
+                vec![
+                    smaller_min(run.params.min as usize / 2).take(3).collect(),
+                    self.confidences(confidence),
+                    self.noises(1.2),
+                ]
+            }
+            Verdict::Dropped { parameter, value, .. } => {
+                let smaller = [0.99 * value, 0.0].map(|value| vec![(parameter, rounded_down(value))]);
+                vec![smaller.to_vec()]
+            }
+            // Sensors bend walls a little; a ball is bent by much more.
+            Verdict::Curved => self.bow.filter(|bow| *bow < SLIGHT).map(|bow| self.noises(bow)).into_iter().collect(),
+            _ => nothing(),
+        }
+    }
+
+    fn confidences(&self, least: f64) -> Vec<Change> {
+        let values = FACTORS.map(|factor| rounded_up(1.01 * factor * least));
+        values.into_iter().filter(|&value| value <= MOST_CONFIDENCE).map(|value| vec![("confidence", value)]).collect()
+    }
+
+    /// The noise in use so many times, as parameters.
+    fn noises(&self, least: f64) -> Vec<Change> {
+        let Some(noise) = self.noise else { return Vec::new() };
+        let here = noise.variance(self.q).sqrt();
+        let most = FACTORS[FACTORS.len() - 1];
+        let factors = FACTORS.into_iter().map(|factor| 1.01 * factor * least).filter(|&factor| factor <= most);
+        let scaled = |factor: f64| match Space::of(self.sensor.measure) {
+            Space::Value => vec![("noise", rounded_up(factor * here))],
+            Space::InverseDepth { .. } => {
+                let (z, sigma_m) = (self.q.recip(), here / (self.q * self.q));
+                // At no range, as good as; what is below a nanometre is growth.
+                let base = noise.depth_sigma_m(1e-6).filter(|base| *base > 1e-9).unwrap_or(0.0);
+                let own = noise.depth_sigma_m(z).unwrap_or(0.0);
+                let growth = ((own - base) / (z * z)).max(0.0);
+                // What rounding adds counts as well, since the noise as stated may be nothing.
+                let times = factor * sigma_m / own;
+                if own > 0.0 && own > 0.3 * sigma_m {
+                    vec![("noise", rounded_up(times * base)), ("noise-growth", rounded_up(times * growth))]
+                } else {
+                    vec![("noise", rounded_up(factor * sigma_m)), ("noise-growth", 0.0)]
+                }
+            }
+        };
+        factors.map(scaled).collect()
+    }
+}
+
+/// The label that most of a region's pixels have, 0 for none.
+fn label_of(run: &Runner, out: &Detection, id: u32) -> u16 {
+    let mut counts = vec![0u32; out.planes.len() + 1];
+    for (ids, labels) in run.image.chunks_exact(run.field.stride).zip(out.labels.chunks_exact(out.width)) {
+        let own = ids.iter().zip(labels).filter(|(own, label)| u32::from(**own) == id + 1 && **label > 0);
+        own.for_each(|(_, &label)| counts[usize::from(label)] += 1);
+    }
+    let best = (0..counts.len()).rev().max_by_key(|&label| counts[label]).filter(|&label| counts[label] > 0);
+    best.unwrap_or(0) as u16
+}
