@@ -2,6 +2,7 @@
 
 mod support;
 
+use depthplanes::detection::Curved;
 use depthplanes::outline::{Outliner, Outlines};
 use depthplanes::{Coplanar, Detection, Detector, Measure, Ngaf, Part, Sensor};
 use depthplanes_io::outputs::{self, OUTPUTS, Output, OutputError, Report, Spread, Times};
@@ -292,10 +293,11 @@ fn an_unknown_extension_names_the_known_ones() {
 #[test]
 fn all_outputs_are_written_and_nothing_else() {
     let folder = folder("all_outputs");
-    let (frame, detection) = (frame(), detection());
+    let (frame, mut detection) = (frame(), detection());
+    detection.curved = Some(Curved { labels: vec![0; detection.labels.len()], regions: Vec::new() });
     let wanted: Vec<(&Output, PathBuf)> = OUTPUTS.iter().map(|output| (output, folder.join(output.file))).collect();
     outputs::write_all(&report(&frame, &detection), &wanted).unwrap();
-    assert_eq!(names_in(&folder), ["cloud.ply", "labels.png", "mesh.ply", "overlay.png", "planes.json"]);
+    assert_eq!(names_in(&folder), ["cloud.ply", "curved.png", "labels.png", "mesh.ply", "overlay.png", "planes.json"]);
 }
 
 #[test]

@@ -127,7 +127,7 @@ fn each_reason_is_told() {
     );
 
     let frame = scene("boxes:seed=4,sensor=kinect,size=320x240");
-    let small = detector_of("planar", &[("min-area", 0.5)], &frame).explain(frame.view(), [40, 200]).unwrap();
+    let small = detector_of("planar", &[("min-area", 0.1)], &frame).explain(frame.view(), [40, 200]).unwrap();
     let large = detector_of("planar", &[("min-area", 50.0)], &frame).explain(frame.view(), [40, 200]).unwrap();
     assert_eq!((small.verdict.kind(), large.verdict.kind()), ("plane", "dropped"), "{small:?}");
     assert_eq!(large.suggestions[0].parameters[0].0, "min-area");

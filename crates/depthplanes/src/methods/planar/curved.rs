@@ -16,6 +16,14 @@ use std::ops::Range;
 /// Largest root mean square, in noise deviations of a pixel, of a plane's bow. Noise alone gives a region of
 /// 240 pixels 0.11 (three terms of a quadratic).
 const BOW: f64 = 0.4;
+/// Pixels from which on a sensor's own distortion counts: it bows a plane the more, the larger its picture.
+const LARGE: f64 = 4000.0;
+
+/// [`BOW`] for a region of so many pixels; it grows with the root of the region's side.
+fn most_bow(pixels: f64) -> f64 {
+    BOW * (pixels / LARGE).max(1.0).sqrt().sqrt()
+}
+
 /// Fewest pixels of a region whose bow means something.
 const LEAST: f64 = 240.0;
 /// Fewest cells that a quadratic, six numbers, is fitted to.
@@ -257,7 +265,7 @@ impl Facets {
     /// a region that is too small to tell.
     pub(super) fn bow(&self, id: u32) -> Option<[f64; 2]> {
         let (bow, pixels) = (self.bows[id as usize], self.sums[id as usize].pixels);
-        (pixels >= LEAST).then(|| [(bow.max(0.0) / pixels).sqrt(), BOW])
+        (pixels >= LEAST).then(|| [(bow.max(0.0) / pixels).sqrt(), most_bow(pixels)])
     }
 }
 
@@ -446,7 +454,7 @@ fn mark_bowed(
         for ((sums, seen), sign) in sums.iter().zip(levels.iter_mut()).zip(signs.iter_mut()) {
             if *seen == OPEN && (sums.cells >= PLENTY || level == 0) {
                 *seen = level as u8;
-                let bows = sums.pixels >= LEAST && sums.bow() > BOW * BOW * sums.pixels;
+                let bows = sums.pixels >= LEAST && sums.bow() > most_bow(sums.pixels).powi(2) * sums.pixels;
                 *sign = bows.then_some(Sign::Bow);
             }
         }

@@ -214,7 +214,7 @@ impl Region {
 
 /// Two regions are one plane if their joint plane adds no more than this to the mean squared residual of
 /// either, in variances.
-const BEND: f64 = 0.7;
+const BEND: f64 = 0.5;
 
 /// What a joint plane adds to the mean squared residual of the region that it suits less, in variances.
 fn bend(a: &Region, b: &Region) -> f64 {
