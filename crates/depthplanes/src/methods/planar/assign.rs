@@ -6,9 +6,10 @@
 //! pixels near it, and the line where they meet, which is known exactly, decides.
 
 use super::field::Field;
+use super::grid::{Grid, NONE};
 use super::grow::Region;
 use super::planes::Planes;
-use super::tiles::{Grid, NONE, SIDE};
+use super::tiles::SIDE;
 use crate::group::vectorised;
 use std::ops::Range;
 
@@ -45,20 +46,13 @@ fn assign_row(
     scratch: &mut Scratch,
     image: &mut [u16],
 ) {
-    let rows = row.saturating_sub(1)..(row + 2).min(blocks.rows);
-    let part = |row: usize| &blocks.region[row * blocks.columns..][..blocks.columns];
-    let own = part(row);
-    let is_alike = |column: usize| {
-        let id = own[column];
-        let columns = column.saturating_sub(1)..(column + 2).min(blocks.columns);
-        id != NONE && rows.clone().all(|row| part(row)[columns.clone()].iter().all(|&other| other == id))
-    };
+    let own = &blocks.region[row * blocks.columns..][..blocks.columns];
     let mut column = 0;
     while column < blocks.columns {
         let id = own[column];
-        if is_alike(column) {
+        if is_inside(blocks, column, row) {
             let most = (column + STRETCH).min(blocks.columns);
-            let end = (column + 1..most).find(|&next| own[next] != id || !is_alike(next)).unwrap_or(most);
+            let end = (column + 1..most).find(|&next| own[next] != id || !is_inside(blocks, next, row)).unwrap_or(most);
             label_inside(stride, planes, id, column..end, row, q, image);
             column = end;
         } else {
@@ -80,6 +74,16 @@ fn assign_row(
             column += 1;
         }
     }
+}
+
+/// Whether all tiles of a block and of those around it are of one region.
+#[inline(always)]
+fn is_inside(blocks: &Grid, column: usize, row: usize) -> bool {
+    let id = blocks.region[row * blocks.columns + column];
+    let columns = column.saturating_sub(1)..(column + 2).min(blocks.columns);
+    let mut rows = row.saturating_sub(1)..(row + 2).min(blocks.rows);
+    id != NONE
+        && rows.all(|row| blocks.region[row * blocks.columns..][columns.clone()].iter().all(|&other| other == id))
 }
 
 /// Labels a stretch of blocks that have one region around them.
@@ -135,16 +139,8 @@ pub(super) struct Held {
 pub(super) fn held_against(grids: [&Grid; 2], [u, v]: [usize; 2]) -> Held {
     let [column, row] = [u / BLOCK, v / BLOCK];
     let near = Near::new(grids, column, row);
-    let blocks = grids[1];
-    let rows = row.saturating_sub(1)..(row + 2).min(blocks.rows);
-    let mut around = rows.flat_map(|row| {
-        let columns = column.saturating_sub(1)..(column + 2).min(blocks.columns);
-        &blocks.region[row * blocks.columns + columns.start..row * blocks.columns + columns.end]
-    });
-    let id = blocks.region[row * blocks.columns + column];
-    let is_inside = id != NONE && around.all(|&other| other == id);
     let middle = [column, row].map(|place| (place * BLOCK) as f64 + HALF);
-    Held { ids: near.ids().to_vec(), middle, factor: if is_inside { INSIDE } else { 1.0 } }
+    Held { ids: near.ids().to_vec(), middle, factor: if is_inside(grids[1], column, row) { INSIDE } else { 1.0 } }
 }
 
 /// The regions of the tiles of a block and of those up to two tiles around it.

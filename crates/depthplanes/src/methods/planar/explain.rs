@@ -5,9 +5,9 @@
 
 use super::assign::{self, Held};
 use super::curved::Sign;
+use super::grid::{Grid, NONE};
 use super::grow::{LEAST, Region};
 use super::planes::Planes;
-use super::tiles::{Grid, NONE};
 use super::{INFO, Moment, Planar, Runner};
 use crate::camera::{Hessian, Measure, Sensor};
 use crate::detection::Detection;

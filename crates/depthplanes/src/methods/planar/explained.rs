@@ -5,10 +5,11 @@
 
 use super::curved::CellBox;
 use super::field::Field;
+use super::grid::Grid;
 use super::grow::Region;
 use super::merge::Pair;
 use super::planes::Planes;
-use super::tiles::{Grid, SIDE};
+use super::tiles::SIDE;
 use crate::group::reserve_to;
 
 /// A region goes if more than this share of its pixels lies on larger planes beside it.

@@ -12,6 +12,7 @@ use crate::noise::{Space, Steps};
 const COLUMNS: usize = LANES * SIDE;
 /// Rows of the coarsest cells.
 const ROWS: usize = SIDE << (LEVELS - 1);
+
 /// A map in q; NaN where nothing was measured and beyond the map's edge.
 #[derive(Debug, Default)]
 pub(super) struct Field {

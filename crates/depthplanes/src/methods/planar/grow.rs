@@ -6,7 +6,8 @@
 //! about the region's plane, which its sums give without touching a pixel; among cells of one size, seeds are
 //! taken in order of their own scatter.
 
-use super::tiles::{Cell, Grid, LEVELS, NONE, Place, Pyramid, drift, most_squares};
+use super::grid::{Cell, Grid, NONE, Place};
+use super::tiles::{LEVELS, Pyramid};
 use crate::fit::Moments;
 use crate::group::reserve_to;
 
@@ -76,11 +77,7 @@ impl Region {
     /// Takes a cell in if its pixels lie on the plane.
     #[inline(always)]
     fn takes(&mut self, cell: &Cell, only_flat: bool, confidence: f64) -> bool {
-        let most = if only_flat {
-            cell.squares + f64::from(drift(cell.n as f32)) * cell.variance
-        } else {
-            most_squares(cell, confidence)
-        };
+        let most = if only_flat { cell.most_drifted() } else { cell.most_squares(confidence) };
         let is_small = self.sums.n < SMALL;
         if !is_small && cell.squares_about(self.abc, self.origin) > most {
             return false;

@@ -3,7 +3,7 @@
 //! In: the coarsest cells of a map. Out: its scatter, estimated from them as [`crate::noise::Estimator`] does from
 //! pixels, but with what rounding does to them: the tolerance of the method is for both.
 
-use super::tiles::Grid;
+use super::grid::Grid;
 use crate::noise::{Blocks, SensorNoise, Space, VALID};
 
 /// Memory of this stage.

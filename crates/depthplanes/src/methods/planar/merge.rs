@@ -3,8 +3,8 @@
 //! In: regions as they grew, and the tiles' region numbers. Out: fewer regions, and the pairs that lie side
 //! by side with the place where they touch.
 
+use super::grid::{Grid, NONE};
 use super::grow::{Region, Regions};
-use super::tiles::{Grid, NONE};
 use crate::error::{Error, Result};
 use crate::fit::Moments;
 use crate::group::reserve_to;

@@ -10,10 +10,12 @@ mod curved;
 mod explain;
 mod explained;
 mod field;
+mod grid;
 mod grow;
 mod level;
 mod merge;
 mod planes;
+mod quadratic;
 mod tiles;
 
 use super::records::Records;

@@ -1,0 +1,238 @@
+//! Cells of one size, side by side, and what is known of each.
+//!
+//! A cell knows how its pixels lie, its least-squares plane and the squared residuals about it, which give the
+//! residuals about any other plane without a look at a pixel.
+
+use super::field::Field;
+use super::tiles::LANES;
+use crate::fit::Moments;
+
+/// No region.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// What is known of each cell: numbers of the same kind side by side.
+#[derive(Debug)]
+pub(super) struct Sums<T> {
+    /// Valid pixels.
+    pub(super) n: T,
+    /// Sums over them of du, dv, du^2, du dv, dv^2 about the cell's middle.
+    pub(super) u: T,
+    pub(super) v: T,
+    pub(super) uu: T,
+    pub(super) uv: T,
+    pub(super) vv: T,
+    /// Its least-squares plane about its middle: `q = a du + b dv + c`.
+    pub(super) a: T,
+    pub(super) b: T,
+    pub(super) c: T,
+    /// Squared residuals about it; infinite if it has none.
+    pub(super) squares: T,
+    /// What it adds to the squares of one of the cell's parts, at most, as a multiple of [`drift`].
+    pub(super) strain: T,
+}
+
+impl<T> Sums<T> {
+    pub(super) fn each(&mut self) -> [&mut T; 11] {
+        let Sums { n, u, v, uu, uv, vv, a, b, c, squares, strain } = self;
+        [n, u, v, uu, uv, vv, a, b, c, squares, strain]
+    }
+}
+
+/// The cells of one size, row by row.
+#[derive(Debug)]
+pub(super) struct Grid {
+    /// Pixels of a cell's side.
+    pub(super) side: usize,
+    pub(super) columns: usize,
+    pub(super) rows: usize,
+    pub(super) sums: Sums<Vec<f32>>,
+    /// Variance of a pixel's q that the noise model expects here.
+    pub(super) variance: Vec<f32>,
+    /// Mean squared residual in units of what noise may leave ([`limit`]): the largest of the cell's own, its
+    /// parts' own, and its parts' about its plane. Flat cells have 1 and less.
+    pub(super) roughness: Vec<f32>,
+    /// For each cell its region, or [`NONE`].
+    pub(super) region: Vec<u32>,
+}
+
+/// One cell, in double precision.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell {
+    /// Its middle (u, v).
+    pub(super) middle: [f64; 2],
+    pub(super) n: f64,
+    u: f64,
+    v: f64,
+    uu: f64,
+    uv: f64,
+    vv: f64,
+    abc: [f64; 3],
+    pub(super) squares: f64,
+    pub(super) variance: f64,
+}
+
+impl Cell {
+    /// Sum of its pixels' squared residuals about the plane `a (u - u0) + b (v - v0) + c + q0`.
+    #[inline(always)]
+    pub(super) fn squares_about(&self, [a, b, c]: [f64; 3], [u0, v0, q0]: [f64; 3]) -> f64 {
+        let [u, v] = self.middle;
+        let (da, db) = (self.abc[0] - a, self.abc[1] - b);
+        let dc = self.abc[2] - (a * (u - u0) + b * (v - v0) + c + q0);
+        let along = da * (da * self.uu + 2.0 * (db * self.uv + dc * self.u)) + db * (db * self.vv + 2.0 * dc * self.v);
+        self.squares + along + dc * dc * self.n
+    }
+
+    /// Sum of its pixels' residuals about that plane.
+    #[inline(always)]
+    pub(super) fn residual_about(&self, [a, b, c]: [f64; 3], [u0, v0, q0]: [f64; 3]) -> f64 {
+        let [u, v] = self.middle;
+        let dc = self.abc[2] - (a * (u - u0) + b * (v - v0) + c + q0);
+        (self.abc[0] - a) * self.u + (self.abc[1] - b) * self.v + dc * self.n
+    }
+
+    /// Its pixels' sums about (u, v, q) = `origin`.
+    pub(super) fn moments(&self, [u0, v0, q0]: [f64; 3]) -> Moments {
+        let &Cell { middle: [mu, mv], n, u, v, uu, uv, vv, abc: [a, b, c], squares, .. } = self;
+        let (uq, vq) = (a * uu + b * uv, a * uv + b * vv);
+        let about_middle = Moments { n, u, v, q: a * u + b * v, uu, uv, vv, uq, vq, qq: squares + a * uq + b * vq };
+        about_middle.moved([mu - u0, mv - v0, c - q0])
+    }
+
+    /// Largest sum of its squared residuals about a plane that its pixels lie on.
+    #[inline(always)]
+    pub(super) fn most_squares(&self, confidence: f64) -> f64 {
+        f64::from(limit(self.n as f32, confidence as f32)) * self.variance
+    }
+
+    /// Largest sum of its squared residuals about the plane of a region that a flat cell joins.
+    #[inline(always)]
+    pub(super) fn most_drifted(&self) -> f64 {
+        self.squares + f64::from(drift(self.n as f32)) * self.variance
+    }
+
+    /// (u, v, q) of its own plane in its middle.
+    pub(super) fn origin(&self) -> [f64; 3] {
+        [self.middle[0], self.middle[1], self.abc[2]]
+    }
+}
+
+impl Grid {
+    pub(super) fn new(side: usize) -> Self {
+        let none = || Vec::new();
+        let sums = Sums {
+            n: none(),
+            u: none(),
+            v: none(),
+            uu: none(),
+            uv: none(),
+            vv: none(),
+            a: none(),
+            b: none(),
+            c: none(),
+            squares: none(),
+            strain: none(),
+        };
+        Grid { side, columns: 0, rows: 0, sums, variance: none(), roughness: none(), region: Vec::new() }
+    }
+
+    pub(super) fn prepare(&mut self, field: &Field) {
+        (self.columns, self.rows) = (field.stride / self.side, field.rows / self.side);
+        let (cells, room) = (self.columns * self.rows, self.columns * self.rows + 2 * LANES);
+        for numbers in self.sums.each().into_iter().chain([&mut self.variance, &mut self.roughness]) {
+            numbers.resize(room, 0.0);
+        }
+        self.region.clear();
+        self.region.resize(cells, NONE);
+    }
+
+    /// How many cells there are.
+    pub(super) fn len(&self) -> usize {
+        self.region.len()
+    }
+
+    /// Valid pixels of a cell.
+    #[inline(always)]
+    pub(super) fn pixels(&self, at: usize) -> f32 {
+        self.sums.n[at]
+    }
+
+    /// Squared residuals of a cell's pixels about its own plane.
+    #[inline(always)]
+    pub(super) fn squares(&self, at: usize) -> f32 {
+        self.sums.squares[at]
+    }
+
+    /// q in the middle of a cell's own plane.
+    pub(super) fn q(&self, at: usize) -> f64 {
+        self.sums.c[at].into()
+    }
+
+    /// Mean squared residual about its own plane in variances.
+    pub(super) fn scatter(&self, at: usize) -> f32 {
+        self.sums.squares[at] / ((self.sums.n[at] - 3.0).max(1.0) * self.variance[at])
+    }
+
+    /// Where a cell's numbers stand.
+    #[inline(always)]
+    pub(super) fn at(&self, place: Place) -> usize {
+        place.row as usize * self.columns + place.column as usize
+    }
+
+    /// A cell.
+    #[inline(always)]
+    pub(super) fn cell(&self, place: Place) -> Cell {
+        let Sums { n, u, v, uu, uv, vv, a, b, c, squares, .. } = &self.sums;
+        let at = self.at(place);
+        let half = (self.side - 1) as f64 / 2.0;
+        let middle = [place.column, place.row].map(|place| f64::from(place) * self.side as f64 + half);
+        let number = |numbers: &[f32]| f64::from(numbers[at]);
+        Cell {
+            middle,
+            n: number(n),
+            u: number(u),
+            v: number(v),
+            uu: number(uu),
+            uv: number(uv),
+            vv: number(vv),
+            abc: [number(a), number(b), number(c)],
+            squares: number(squares),
+            variance: number(&self.variance),
+        }
+    }
+
+    /// The four neighbours of a cell.
+    #[inline(always)]
+    pub(super) fn neighbours(&self, Place { column, row }: Place) -> impl Iterator<Item = Place> + use<> {
+        let beside = [
+            (column > 0).then(|| Place { column: column - 1, row }),
+            ((column as usize) + 1 < self.columns).then(|| Place { column: column + 1, row }),
+            (row > 0).then(|| Place { column, row: row - 1 }),
+            ((row as usize) + 1 < self.rows).then(|| Place { column, row: row + 1 }),
+        ];
+        beside.into_iter().flatten()
+    }
+}
+
+/// Where a cell lies in its grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Place {
+    pub(super) row: u32,
+    pub(super) column: u32,
+}
+
+/// Largest sum of squared residuals of n pixels of one plane, in variances: the mean of chi-squared is n, its
+/// standard deviation sqrt(2 n). The noise level itself is known to about a fifth.
+#[inline(always)]
+pub(super) fn limit(n: f32, confidence: f32) -> f32 {
+    1.4 * (n + confidence * (2.0 * n).sqrt())
+}
+
+/// Mean square that a sensor's own distortion may add, in variances of a pixel.
+const DRIFT: f32 = 0.1;
+
+/// Largest sum of squares that another plane may add to the own ones of a cell of n pixels, in variances: three
+/// parameters add 3 in the mean, 10 once in fifty times, and distortion adds its share of every pixel.
+#[inline(always)]
+pub(super) fn drift(n: f32) -> f32 {
+    10.0 + DRIFT * n
+}

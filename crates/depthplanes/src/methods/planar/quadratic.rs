@@ -1,0 +1,159 @@
+//! A quadratic through the means of cells, by least squares.
+//!
+//! In: runs of cells with their residuals about a plane. Out: how much of these a quadratic explains, and how much
+//! a plane does.
+
+use super::grid::{Grid, Place};
+use super::grow::Region;
+use std::ops::Range;
+
+/// Sums over cells of `weight x^i y^j` up to the fourth power, and with a value r up to the second: the normal equations
+/// of a quadratic in (x, y), and how well it or anything else explains r.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Sums {
+    /// Of x^i y^j, i + j <= 4, by j and i.
+    powers: [[f64; 5]; 5],
+    /// Of r x^i y^j, i + j <= 2.
+    right: [[f64; 3]; 3],
+    /// Of r r.
+    squares: f64,
+    /// Cells.
+    pub(super) cells: f64,
+    /// Pixels.
+    pub(super) pixels: f64,
+    /// Sum of the weighed squared residuals about the cell's own region.
+    pub(super) by_planes: f64,
+}
+
+/// (j, i) of the terms 1, x, y, x^2, x y, y^2.
+const TERMS: [[usize; 2]; 6] = [[0, 0], [0, 1], [1, 0], [0, 2], [1, 1], [2, 0]];
+
+impl Sums {
+    /// Adds cells of one row, summed along it: `powers[i]` of `w x^i`, `right[i]` of `w r x^i`.
+    fn add_row(&mut self, y: f64, powers: [f64; 5], right: [f64; 3]) {
+        let mut yj = 1.0;
+        for j in 0..5 {
+            for i in 0..5 - j {
+                self.powers[j][i] += yj * powers[i];
+            }
+            for i in 0..3usize.saturating_sub(j) {
+                self.right[j][i] += yj * right[i];
+            }
+            yj *= y;
+        }
+    }
+
+    pub(super) fn merge(&self, other: &Sums) -> Sums {
+        let mut both = *self;
+        for j in 0..5 {
+            for i in 0..5 - j {
+                both.powers[j][i] += other.powers[j][i];
+            }
+        }
+        for [j, i] in TERMS {
+            both.right[j][i] += other.right[j][i];
+        }
+        both.squares += other.squares;
+        both.cells += other.cells;
+        both.pixels += other.pixels;
+        both.by_planes += other.by_planes;
+        both
+    }
+
+    fn matrix(&self) -> [[f64; 6]; 6] {
+        TERMS.map(|[j, i]| TERMS.map(|[l, k]| self.powers[j + l][i + k]))
+    }
+
+    fn right(&self) -> [f64; 6] {
+        TERMS.map(|[j, i]| self.right[j][i])
+    }
+
+    /// The least-squares coefficients of the first N terms; those that the cells do not determine are 0.
+    pub(super) fn solve<const N: usize>(&self) -> [f64; 6] {
+        let (mut m, mut r) = (self.matrix(), self.right());
+        let diagonal: [f64; 6] = std::array::from_fn(|i| m[i][i]);
+        let mut pivots = [false; 6];
+        for i in 0..N {
+            pivots[i] = m[i][i] > 1e-9 * diagonal[i];
+            if pivots[i] {
+                for k in i + 1..N {
+                    let factor = m[k][i] / m[i][i];
+                    r[k] -= factor * r[i];
+                    for j in i..N {
+                        m[k][j] -= factor * m[i][j];
+                    }
+                }
+            }
+        }
+        let mut solution = [0.0; 6];
+        for i in (0..6).rev().filter(|&i| pivots[i]) {
+            let known: f64 = (i + 1..N).map(|j| m[i][j] * solution[j]).sum();
+            solution[i] = (r[i] - known) / m[i][i];
+        }
+        solution
+    }
+
+    /// What a quadratic explains beyond a plane.
+    pub(super) fn bow(&self) -> f64 {
+        self.left_by(&self.solve::<3>()) - self.left_by(&self.solve::<6>())
+    }
+
+    /// Sum of the weighed squares that these coefficients leave.
+    pub(super) fn left_by(&self, coefficients: &[f64; 6]) -> f64 {
+        let (matrix, right) = (self.matrix(), self.right());
+        let explained: f64 = (0..6)
+            .map(|i| {
+                let product: f64 = (0..6).map(|j| matrix[i][j] * coefficients[j]).sum();
+                coefficients[i] * (2.0 * right[i] - product)
+            })
+            .sum();
+        self.squares - explained
+    }
+}
+
+/// Where x and y of a region's quadratic are 0, and pixels per unit.
+pub(super) struct Frame {
+    middle: [f64; 2],
+    scale: f64,
+}
+
+impl Frame {
+    pub(super) fn of(region: &Region) -> Self {
+        Frame { middle: region.middle, scale: 1.0 / region.sums.n.sqrt() }
+    }
+}
+
+impl Sums {
+    /// Adds a run of cells: their mean residuals about `plane`, and how far off their own region's is.
+    pub(super) fn add_run(
+        &mut self,
+        grid: &Grid,
+        row: usize,
+        columns: Range<usize>,
+        plane: &Region,
+        own: &Region,
+        frame: &Frame,
+    ) {
+        let (mut powers, mut right) = ([0.0; 5], [0.0; 3]);
+        let mut y = 0.0;
+        for column in columns {
+            let cell = grid.cell(Place { row: row as u32, column: column as u32 });
+            let x = (cell.middle[0] - frame.middle[0]) * frame.scale;
+            y = (cell.middle[1] - frame.middle[1]) * frame.scale;
+            let (per_variance, per_n) = (1.0 / cell.variance, 1.0 / cell.n);
+            let weight = cell.n * per_variance;
+            let residual = cell.residual_about(plane.abc, plane.origin);
+            let weighed = residual * per_variance;
+            let xx = x * x;
+            let (wx, wxx) = (weight * x, weight * xx);
+            powers = [powers[0] + weight, powers[1] + wx, powers[2] + wxx, powers[3] + wx * xx, powers[4] + wxx * xx];
+            right = [right[0] + weighed, right[1] + weighed * x, right[2] + weighed * xx];
+            self.squares += weighed * residual * per_n;
+            self.pixels += cell.n;
+            self.cells += 1.0;
+            let by_own = cell.residual_about(own.abc, own.origin);
+            self.by_planes += by_own * by_own * per_variance * per_n;
+        }
+        self.add_row(y, powers, right);
+    }
+}
