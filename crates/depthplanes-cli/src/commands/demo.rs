@@ -5,7 +5,7 @@ use crate::failure::Outcome;
 use crate::run::{Recipe, Runner};
 use crate::{load, show};
 use depthplanes::Intrinsics;
-use depthplanes::methods::METHODS;
+use depthplanes::methods;
 use depthplanes_io::outputs::{self, OUTPUTS, Output, Report};
 use depthplanes_io::{Frame, Pixels};
 use std::io::Write;
@@ -13,12 +13,12 @@ use std::path::{Path, PathBuf};
 
 /// A furnished room without noise, in millimetres.
 const SCENE: &str = "room:sensor=clean_mm";
-/// Millimetres between neighbours of a slanted wall, and the size of a table leg.
-const PARAMETERS: &[(&str, f64)] = &[("theta", 4.0), ("min", 1000.0)];
+/// The method that finds what is there without a parameter.
+const METHOD: &str = "planar";
 
 pub(super) fn run(folder: &Path, out: &mut dyn Write) -> Outcome {
     let frame = load::scene(SCENE)?;
-    let recipe = Recipe::new(METHODS[0], PARAMETERS, 1)?;
+    let recipe = Recipe::new(methods::find(METHOD)?, &[], 1)?;
     let found = Runner::new(&recipe).detect(&frame, 0)?;
     let source = format!("scene:{SCENE}");
     let report = Report {
@@ -59,8 +59,7 @@ fn tell(report: &Report<'_>, depth: &Path, files: &[(&Output, PathBuf)], out: &m
     let overlay = files.iter().find(|(output, _)| output.name == "overlay");
     let picture = overlay.map(|(_, path)| path.display().to_string()).unwrap_or_default();
     writeln!(out, "\nLook at {picture}. The same again from the file:")?;
-    let given: Vec<String> = PARAMETERS.iter().map(|(name, value)| format!("--{name} {value}")).collect();
-    write!(out, "  depthplanes detect {} --encoding millimetre {}", depth.display(), given.join(" "))?;
+    write!(out, "  depthplanes detect {} --encoding millimetre --method {METHOD}", depth.display())?;
     if let Some(Intrinsics { fx, fy, cx, cy }) = report.frame.sensor.intrinsics {
         write!(out, " --intrinsics {fx},{fy},{cx},{cy}")?;
     }
