@@ -331,12 +331,14 @@ impl Distances {
     ) {
         let (u, v) = (f64::from(run.u_first), f64::from(run.v));
         let (first, slope) = (plane.at(u, v), plane.abc[0]);
+        let mut squares = [0.0; LANES];
         in_lanes(
             values,
             |k, value| 1.0 - depth_m(value) * (first + slope * k), // z (q - q of the plane)
             #[inline(always)]
-            |_, relative| (0..LANES).for_each(|lane| self.squares[lane] += relative[lane] * relative[lane]),
+            |_, relative| (0..LANES).for_each(|lane| squares[lane] += relative[lane] * relative[lane]),
         );
+        (0..LANES).for_each(|lane| self.squares[lane] += squares[lane]);
         let is_behind = |z: f64| !(z > 0.0 && z < f64::INFINITY);
         if !T::IS_INTEGER || camera.is_some() {
             self.behind_infinity |= values.iter().fold(false, |any, &value| any | is_behind(depth_m(value)));
