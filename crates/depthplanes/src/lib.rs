@@ -21,6 +21,7 @@ pub mod methods;
 pub mod metrics;
 pub mod noise;
 pub mod outline;
+mod parallel;
 pub mod scene;
 pub mod select;
 

@@ -43,8 +43,13 @@ impl Steps {
         seen.resize(1 << (8 * size_of::<T>()), false);
         let validity = map.validity();
         for row in map.rows().step_by(map.area().div_ceil(SAMPLE)) {
-            row.iter().filter(|value| validity.holds(**value)).for_each(|&value| seen[value.into() as usize] = true);
+            for &value in row {
+                // Without a branch: 0 stands for the values that do not count.
+                let value = if validity.holds(value) { value.to_f32() as u32 } else { 0 };
+                seen[value as usize] = true;
+            }
         }
+        seen[0] = false;
     }
 
     /// How often neighbouring values that occur are so far apart.
@@ -52,7 +57,7 @@ impl Steps {
         let mut steps = [0; FAR + 1];
         let mut last = None;
         for (first, values) in (0..).step_by(GROUP).zip(self.seen.chunks(GROUP)) {
-            if values.contains(&true) {
+            if values.iter().fold(false, |any, &seen| any | seen) {
                 for (value, _) in (first..).zip(values).filter(|(_, seen)| **seen) {
                     if let Some(last) = last.replace(value) {
                         steps[FAR.min(value - last)] += 1;

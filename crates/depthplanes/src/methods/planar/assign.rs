@@ -11,6 +11,7 @@ use super::grow::Region;
 use super::planes::Planes;
 use super::tiles::SIDE;
 use crate::group::vectorised;
+use crate::parallel::{Rows, in_parts};
 use std::ops::Range;
 
 /// How much further from its plane a pixel may lie where no other plane is near, as a factor.
@@ -24,15 +25,39 @@ const PIXELS: usize = BLOCK * BLOCK;
 /// A block's pixels, row by row.
 type Pixels<T> = [T; PIXELS];
 
-/// Labels every pixel. `grids`: the tiles, and the blocks with the region that their tiles agree on.
-pub(super) fn assign(field: &Field, grids: [&Grid; 2], planes: &Planes<'_>, image: &mut [u16]) {
-    let rows = image.chunks_exact_mut(BLOCK * field.stride).zip(field.q.chunks_exact(BLOCK * field.stride));
-    let mut scratch = Scratch::default();
-    for (row, (image, q)) in rows.enumerate() {
-        vectorised(
-            #[inline(always)]
-            || assign_row(field.stride, grids, planes, row, q, &mut scratch, image),
-        );
+/// Labels every pixel, on as many threads. `grids`: the tiles, and the blocks with the region that their tiles agree on.
+pub(super) fn assign(field: &Field, grids: [&Grid; 2], planes: &Planes<'_>, threads: usize, image: &mut [u16]) {
+    let per_row = BLOCK * field.stride;
+    let assign = |part: BlockRows<'_>| {
+        let mut scratch = Scratch::default();
+        for (row, image) in (part.first..).zip(part.image.chunks_exact_mut(per_row)) {
+            let q = &field.q[row * per_row..][..per_row];
+            vectorised(
+                #[inline(always)]
+                || assign_row(field.stride, grids, planes, row, q, &mut scratch, image),
+            );
+        }
+    };
+    in_parts(threads, BlockRows { first: 0, per_row, image }, assign, |(), ()| ());
+}
+
+/// The image's pixels in some rows of blocks.
+struct BlockRows<'a> {
+    first: usize,
+    /// Pixels of a row of blocks.
+    per_row: usize,
+    image: &'a mut [u16],
+}
+
+impl Rows for BlockRows<'_> {
+    fn rows(&self) -> usize {
+        self.image.len() / self.per_row
+    }
+
+    fn cut(self, rows: usize) -> (Self, Self) {
+        let BlockRows { first, per_row, image } = self;
+        let (above, below) = image.split_at_mut(rows * per_row);
+        (BlockRows { first, per_row, image: above }, BlockRows { first: first + rows, per_row, image: below })
     }
 }
 

@@ -46,7 +46,7 @@ impl Runner {
         noise: &NoiseModel,
         old: Option<Curved>,
     ) -> Result<Curved> {
-        self.assign(noise, true);
+        self.assign(noise, true, job.threads);
         self.join_facets(noise);
         let Runner { params, field, image, grouper, selection, describer, .. } = self;
         let ids =

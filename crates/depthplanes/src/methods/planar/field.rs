@@ -4,14 +4,13 @@
 //! blocks of tiles around it, so that no later stage has to mind the map's edge.
 
 use super::tiles::{LANES, LEVELS, SIDE};
-use crate::group::vectorised;
 use crate::map::{DepthView, Pixel, Validity};
 use crate::noise::{Space, Steps};
 
 /// Columns that are summed at a time.
 const COLUMNS: usize = LANES * SIDE;
 /// Rows of the coarsest cells.
-const ROWS: usize = SIDE << (LEVELS - 1);
+pub(super) const ROWS: usize = SIDE << (LEVELS - 1);
 
 /// A map in q; NaN where nothing was measured and beyond the map's edge.
 #[derive(Debug, Default)]
@@ -30,37 +29,22 @@ pub(super) struct Field {
 }
 
 impl Field {
-    /// Turns every value into q.
-    pub(super) fn fill<T: Pixel>(&mut self, map: &DepthView<'_, T>, space: Space) {
-        self.prepare(map.width(), map.height());
-        let Field { width, stride, q, .. } = self;
-        self.valid_pixels = map
-            .rows()
-            .zip(q.chunks_exact_mut(*stride))
-            .map(|(row, q)| {
-                let q = &mut q[..*width];
-                vectorised(
-                    #[inline(always)]
-                    || fill_row(row, q, map.validity(), space),
-                )
-            })
-            .sum();
-        self.step = self.steps.of(map);
-    }
-
-    fn prepare(&mut self, width: usize, height: usize) {
+    /// Makes room for a map, and finds its steps.
+    pub(super) fn prepare<T: Pixel>(&mut self, map: &DepthView<'_, T>) {
+        let (width, height) = (map.width(), map.height());
         if (self.width, self.height) != (width, height) {
             (self.width, self.height) = (width, height);
             (self.stride, self.rows) = (width.next_multiple_of(COLUMNS), height.next_multiple_of(ROWS));
             self.q.clear();
             self.q.resize(self.stride * self.rows, f32::NAN);
         }
+        self.step = self.steps.of(map);
     }
 }
 
-/// Turns a row into q; how many of its pixels are valid.
+/// Turns a row of a map into q; how many of its pixels are valid.
 #[inline(always)]
-fn fill_row<T: Pixel>(row: &[T], q: &mut [f32], validity: Validity<T>, space: Space) -> usize {
+pub(super) fn fill_row<T: Pixel>(row: &[T], q: &mut [f32], validity: Validity<T>, space: Space) -> usize {
     match space {
         Space::InverseDepth { metres } => {
             let per_unit = (1.0 / metres) as f32;

@@ -4,8 +4,8 @@
 //! residuals about any other plane without a look at a pixel.
 
 use super::field::Field;
-use super::tiles::LANES;
 use crate::fit::Moments;
+use crate::parallel::Rows;
 
 /// No region.
 pub(super) const NONE: u32 = u32::MAX;
@@ -32,6 +32,10 @@ pub(super) struct Sums<T> {
 }
 
 impl<T> Sums<T> {
+    pub(super) fn of([n, u, v, uu, uv, vv, a, b, c, squares, strain]: [T; 11]) -> Self {
+        Sums { n, u, v, uu, uv, vv, a, b, c, squares, strain }
+    }
+
     pub(super) fn each(&mut self) -> [&mut T; 11] {
         let Sums { n, u, v, uu, uv, vv, a, b, c, squares, strain } = self;
         [n, u, v, uu, uv, vv, a, b, c, squares, strain]
@@ -119,30 +123,25 @@ impl Cell {
 impl Grid {
     pub(super) fn new(side: usize) -> Self {
         let none = || Vec::new();
-        let sums = Sums {
-            n: none(),
-            u: none(),
-            v: none(),
-            uu: none(),
-            uv: none(),
-            vv: none(),
-            a: none(),
-            b: none(),
-            c: none(),
-            squares: none(),
-            strain: none(),
-        };
+        let sums = Sums::of(std::array::from_fn(|_| none()));
         Grid { side, columns: 0, rows: 0, sums, variance: none(), roughness: none(), region: Vec::new() }
     }
 
     pub(super) fn prepare(&mut self, field: &Field) {
         (self.columns, self.rows) = (field.stride / self.side, field.rows / self.side);
-        let (cells, room) = (self.columns * self.rows, self.columns * self.rows + 2 * LANES);
+        let cells = self.columns * self.rows;
         for numbers in self.sums.each().into_iter().chain([&mut self.variance, &mut self.roughness]) {
-            numbers.resize(room, 0.0);
+            numbers.resize(cells, 0.0);
         }
         self.region.clear();
         self.region.resize(cells, NONE);
+    }
+
+    /// All rows, to be written.
+    pub(super) fn whole(&mut self) -> GridRows<'_> {
+        let Grid { columns, rows, sums, variance, roughness, .. } = self;
+        let sums = Sums::of(sums.each().map(|numbers| &mut numbers[..]));
+        GridRows { columns: *columns, rows: *rows, sums, variance, roughness }
     }
 
     /// How many cells there are.
@@ -235,4 +234,36 @@ const DRIFT: f32 = 0.1;
 #[inline(always)]
 pub(super) fn drift(n: f32) -> f32 {
     10.0 + DRIFT * n
+}
+
+/// What is known of the cells of some rows, to be written.
+#[derive(Debug)]
+pub(super) struct GridRows<'a> {
+    pub(super) columns: usize,
+    pub(super) rows: usize,
+    pub(super) sums: Sums<&'a mut [f32]>,
+    pub(super) variance: &'a mut [f32],
+    pub(super) roughness: &'a mut [f32],
+}
+
+impl<'a> Rows for GridRows<'a> {
+    fn rows(&self) -> usize {
+        self.rows
+    }
+
+    fn cut(mut self, rows: usize) -> (Self, Self) {
+        let columns = self.columns;
+        let take = |numbers: &mut &'a mut [f32]| -> &'a mut [f32] {
+            numbers.split_off_mut(..rows * columns).expect("so many rows")
+        };
+        let first = GridRows {
+            columns,
+            rows,
+            sums: Sums::of(self.sums.each().map(take)),
+            variance: take(&mut self.variance),
+            roughness: take(&mut self.roughness),
+        };
+        self.rows -= rows;
+        (first, self)
+    }
 }

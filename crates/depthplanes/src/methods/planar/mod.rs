@@ -20,7 +20,6 @@ mod tiles;
 
 use super::records::Records;
 use super::{Job, Method, MethodInfo, Param, ParamKind};
-use crate::camera::Sensor;
 use crate::describe::{Describer, Seen};
 use crate::detection::Detection;
 use crate::error::{Error, Result};
@@ -223,13 +222,13 @@ impl Runner {
         if self.params.min_area > 0.0 {
             job.sensor.check_metric("min-area")?;
         }
-        let noise = self.sum_tiles(&map, &job.sensor);
+        let noise = self.sum_tiles(&map, job);
         job.done("tiles");
-        self.grow(&noise, watch)?;
+        self.grow(&noise, job.threads, watch)?;
         job.done("grow");
         self.judge(&noise, watch);
         job.done("judge");
-        self.assign(&noise, false);
+        self.assign(&noise, false, job.threads);
         watch(Moment::Assigned, self, &noise);
         job.done("assign");
         let Runner { params, field, image, grouper, selection, describer, .. } = self;
@@ -258,11 +257,12 @@ impl Runner {
     }
 
     /// The map in the space where planes are affine, its tiles, and the noise to expect.
-    fn sum_tiles<T: Pixel>(&mut self, map: &DepthView<'_, T>, sensor: &Sensor) -> NoiseModel {
+    fn sum_tiles<T: Pixel>(&mut self, map: &DepthView<'_, T>, job: &Job<'_>) -> NoiseModel {
         let Runner { params, field, pyramid, level, .. } = self;
+        let sensor = &job.sensor;
         let space = Space::of(sensor.measure);
-        field.fill(map, space);
-        pyramid.sum(field);
+        field.prepare(map);
+        pyramid.sum(map, space, job.threads, field);
         let model = |noise| NoiseModel::new(sensor.measure, noise, field.step);
         let stated = params.noise(space).or(sensor.noise).and_then(model);
         let estimated = || Some(model(level.estimate(&pyramid.grids[LEVELS - 1], space))?.of_scatter());
@@ -270,8 +270,8 @@ impl Runner {
     }
 
     /// Regions of cells on one plane.
-    fn grow(&mut self, noise: &NoiseModel, watch: &mut Watch<'_>) -> Result<()> {
-        self.pyramid.expect(noise, self.params.confidence);
+    fn grow(&mut self, noise: &NoiseModel, threads: usize, watch: &mut Watch<'_>) -> Result<()> {
+        self.pyramid.expect(noise, self.params.confidence, threads);
         self.regions.grow(&mut self.pyramid, self.params.confidence);
         watch(Moment::Grown, self, noise);
         self.merger.merge(&self.pyramid.grids[0], &mut self.regions);
@@ -293,12 +293,12 @@ impl Runner {
     }
 
     /// The region of every pixel: its plane, or its curved region.
-    fn assign(&mut self, noise: &NoiseModel, curved: bool) {
+    fn assign(&mut self, noise: &NoiseModel, curved: bool, threads: usize) {
         let Runner { params, field, pyramid, regions, image, .. } = self;
         image.resize(field.q.len(), 0);
         pyramid.hand_up();
         let [tiles, blocks, ..] = &pyramid.grids;
         let planes = Planes { regions: &regions.all, noise, confidence: params.confidence, curved };
-        assign::assign(field, [tiles, blocks], &planes, image);
+        assign::assign(field, [tiles, blocks], &planes, threads, image);
     }
 }

@@ -4,10 +4,12 @@
 //! and cells of 4 x 4, each with its own plane. All cells of a row are computed side by side, so the loops are plain
 //! arithmetic that the compiler turns into vectors.
 
-use super::field::Field;
-use super::grid::{Grid, NONE, Sums, drift, limit};
+use super::field::{Field, ROWS, fill_row};
+use super::grid::{Grid, GridRows, NONE, Sums, drift, limit};
 use crate::group::vectorised;
-use crate::noise::NoiseModel;
+use crate::map::{DepthView, Pixel};
+use crate::noise::{NoiseModel, Space};
+use crate::parallel::{Rows, in_parts};
 use std::array::from_fn;
 
 /// Columns and rows of a tile. The smallest plane has to hold a few; a tile's own plane should still
@@ -33,34 +35,33 @@ impl Default for Pyramid {
 }
 
 impl Pyramid {
-    /// Sums a map's pixels, tile by tile, and the tiles, cell by cell.
-    pub(super) fn sum(&mut self, field: &Field) {
+    /// Turns a map into q and sums it, tile by tile, and the tiles, cell by cell.
+    pub(super) fn sum<T: Pixel>(&mut self, map: &DepthView<'_, T>, space: Space, threads: usize, field: &mut Field) {
         self.grids.iter_mut().for_each(|grid| grid.prepare(field));
-        vectorised(
-            #[inline(always)]
-            || {
-                sum_tiles(field, &mut self.grids[0]);
-                for level in 1..LEVELS {
-                    let (finer, coarser) = self.grids.split_at_mut(level);
-                    sum_cells(&finer[level - 1], &mut coarser[0]);
-                }
-            },
-        );
+        let Field { stride, ref mut q, .. } = *field;
+        let whole = Band { first: 0, stride, q, cells: self.whole() };
+        let sum = |band: Band<'_>| {
+            vectorised(
+                #[inline(always)]
+                || band.sum(map, space),
+            )
+        };
+        field.valid_pixels = in_parts(threads, whole, sum, |a, b| a + b);
     }
 
     /// Holds the cells against a noise model.
-    pub(super) fn expect(&mut self, noise: &NoiseModel, confidence: f64) {
-        vectorised(
-            #[inline(always)]
-            || {
-                for level in 0..LEVELS {
-                    let (finer, coarser) = self.grids.split_at_mut(level);
-                    let grid = &mut coarser[0];
-                    noise.variances(&grid.sums.c, &mut grid.variance);
-                    grid.hold_against_noise(finer.last(), confidence as f32);
-                }
-            },
-        );
+    pub(super) fn expect(&mut self, noise: &NoiseModel, confidence: f64, threads: usize) {
+        let expect = |mut cells: Cells<'_>| {
+            vectorised(
+                #[inline(always)]
+                || cells.expect(noise, confidence as f32),
+            );
+        };
+        in_parts(threads, self.whole(), expect, |(), ()| ());
+    }
+
+    fn whole(&mut self) -> Cells<'_> {
+        Cells { grids: self.grids.each_mut().map(Grid::whole) }
     }
 
     /// Gives the regions of a grid's cells to those of the cells' parts that have a pixel.
@@ -95,28 +96,110 @@ impl Pyramid {
     }
 }
 
-/// The middle of a tile's columns and rows from its own.
-const OFF: [f32; SIDE] = [-1.5, -0.5, 0.5, 1.5];
+/// The cells of some rows of the coarsest ones, of all sizes.
+struct Cells<'a> {
+    grids: [GridRows<'a>; LEVELS],
+}
 
-#[inline(always)]
-fn sum_tiles(field: &Field, grid: &mut Grid) {
-    for (row, rows) in field.q.chunks_exact(field.stride * SIDE).enumerate() {
-        let mut rows = rows.chunks_exact(field.stride);
-        let rows: [_; SIDE] = from_fn(|_| rows.next().expect("so many rows").as_chunks::<{ LANES * SIDE }>().0);
-        for block in 0..rows[0].len() {
-            grid.put(row, block * LANES, tiles(from_fn(|row| &rows[row][block])));
+impl Rows for Cells<'_> {
+    fn rows(&self) -> usize {
+        self.grids[LEVELS - 1].rows()
+    }
+
+    fn cut(self, rows: usize) -> (Self, Self) {
+        let mut level = 0;
+        let [a, b, c] = self.grids.map(|grid| {
+            level += 1;
+            grid.cut(rows << (LEVELS - level))
+        });
+        (Cells { grids: [a.0, b.0, c.0] }, Cells { grids: [a.1, b.1, c.1] })
+    }
+}
+
+impl Cells<'_> {
+    #[inline(always)]
+    fn expect(&mut self, noise: &NoiseModel, confidence: f32) {
+        for level in 0..LEVELS {
+            let (finer, coarser) = self.grids.split_at_mut(level);
+            let grid = &mut coarser[0];
+            noise.variances(grid.sums.c, grid.variance);
+            grid.hold_against_noise(finer.last(), confidence);
         }
     }
 }
 
-#[inline(always)]
-fn sum_cells(parts: &Grid, grid: &mut Grid) {
-    let half = parts.side as f32 / 2.0;
-    for row in 0..grid.rows {
-        for column in (0..grid.columns).step_by(LANES) {
-            let first = 2 * row * parts.columns + 2 * column;
-            grid.put(row, column, cells(&parts.sums, [first, first + parts.columns], half));
+/// Rows of a map, as many as some of the coarsest cells have.
+struct Band<'a> {
+    /// The map's row in the band's first.
+    first: usize,
+    stride: usize,
+    q: &'a mut [f32],
+    cells: Cells<'a>,
+}
+
+impl Rows for Band<'_> {
+    fn rows(&self) -> usize {
+        self.cells.rows()
+    }
+
+    fn cut(self, rows: usize) -> (Self, Self) {
+        let Band { first, stride, q, cells } = self;
+        let (q, cells) = (q.split_at_mut(rows * ROWS * stride), cells.cut(rows));
+        (
+            Band { first, stride, q: q.0, cells: cells.0 },
+            Band { first: first + rows * ROWS, stride, q: q.1, cells: cells.1 },
+        )
+    }
+}
+
+impl Band<'_> {
+    /// Turns its rows into q and sums them, those of a row of the coarsest cells at a time, which the nearest cache holds;
+    /// how many pixels are valid.
+    #[inline(always)]
+    fn sum<T: Pixel>(self, map: &DepthView<'_, T>, space: Space) -> usize {
+        let Band { first, stride, q, cells: Cells { mut grids } } = self;
+        let mut valid = 0;
+        for (row, q) in q.chunks_exact_mut(ROWS * stride).enumerate() {
+            let first = first + row * ROWS;
+            for (v, q) in (first..map.height()).zip(q.chunks_exact_mut(stride)) {
+                valid += fill_row(map.row(v), &mut q[..map.width()], map.validity(), space);
+            }
+            let tiles = ROWS / SIDE;
+            for (below, q) in q.chunks_exact(SIDE * stride).enumerate() {
+                sum_tiles(q, row * tiles + below, &mut grids[0]);
+            }
+            for level in 1..LEVELS {
+                let (finer, coarser) = grids.split_at_mut(level);
+                let cells = tiles >> level;
+                for below in 0..cells {
+                    sum_cells(&finer[level - 1], row * cells + below, SIDE << level, &mut coarser[0]);
+                }
+            }
         }
+        valid
+    }
+}
+
+/// The middle of a tile's columns and rows from its own.
+const OFF: [f32; SIDE] = [-1.5, -0.5, 0.5, 1.5];
+
+/// Sums a row of tiles.
+#[inline(always)]
+fn sum_tiles(q: &[f32], row: usize, grid: &mut GridRows<'_>) {
+    let mut rows = q.chunks_exact(q.len() / SIDE);
+    let rows: [_; SIDE] = from_fn(|_| rows.next().expect("so many rows").as_chunks::<{ LANES * SIDE }>().0);
+    for block in 0..rows[0].len() {
+        grid.put(row, block * LANES, tiles(from_fn(|row| &rows[row][block])));
+    }
+}
+
+/// Sums a row of cells of `side` columns.
+#[inline(always)]
+fn sum_cells(parts: &GridRows<'_>, row: usize, side: usize, grid: &mut GridRows<'_>) {
+    let quarter = side as f32 / 4.0;
+    for column in (0..grid.columns).step_by(LANES) {
+        let first = 2 * row * parts.columns + 2 * column;
+        grid.put(row, column, cells(&parts.sums, [first, first + parts.columns], quarter));
     }
 }
 
@@ -170,13 +253,11 @@ fn tiles(rows: [&[f32; LANES * SIDE]; SIDE]) -> Sums<Lanes> {
 
 /// The sums of cells that lie side by side, from their parts in two rows.
 #[inline(always)]
-fn cells(parts: &Sums<Vec<f32>>, rows: [usize; 2], half: f32) -> Sums<Lanes> {
-    let part = |numbers: &'_ [f32]| -> [[f32; 2 * LANES]; 2] {
-        rows.map(|first| numbers[first..first + 2 * LANES].try_into().expect("so many"))
-    };
+fn cells(parts: &Sums<&mut [f32]>, rows: [usize; 2], half: f32) -> Sums<Lanes> {
+    let part = |numbers: &[f32]| [some(&numbers[rows[0]..]), some(&numbers[rows[1]..])];
     let (pn, pu, pv, puu, puv, pvv) =
-        (part(&parts.n), part(&parts.u), part(&parts.v), part(&parts.uu), part(&parts.uv), part(&parts.vv));
-    let (pa, pb, pc, psquares) = (part(&parts.a), part(&parts.b), part(&parts.c), part(&parts.squares));
+        (part(parts.n), part(parts.u), part(parts.v), part(parts.uu), part(parts.uv), part(parts.vv));
+    let (pa, pb, pc, psquares) = (part(parts.a), part(parts.b), part(parts.c), part(parts.squares));
     let mut out = no_sums();
     for t in 0..LANES {
         let [mut n, mut u, mut v, mut uu, mut uv, mut vv, mut sum] = [0.0; 7];
@@ -228,6 +309,17 @@ fn cells(parts: &Sums<Vec<f32>>, rows: [usize; 2], half: f32) -> Sums<Lanes> {
     out
 }
 
+/// The first numbers; anything for those that are missing, which belong to no cell.
+#[inline(always)]
+fn some(numbers: &[f32]) -> [f32; 2 * LANES] {
+    let mut out = [0.0; 2 * LANES];
+    match numbers.first_chunk::<{ 2 * LANES }>() {
+        Some(all) => out = *all,
+        None => out[..numbers.len()].copy_from_slice(numbers),
+    }
+    out
+}
+
 /// The squares of a part, nothing for one without a plane, which has no pixels either.
 #[inline(always)]
 fn own(squares: f32) -> f32 {
@@ -245,27 +337,31 @@ impl Sums<Lanes> {
     }
 }
 
-impl Grid {
+impl GridRows<'_> {
     /// Writes the numbers of cells that lie side by side, as many as the row has.
     #[inline(always)]
     fn put(&mut self, row: usize, column: usize, mut sums: Sums<Lanes>) {
         let (at, count) = (row * self.columns + column, (self.columns - column).min(LANES));
         for (numbers, lanes) in self.sums.each().into_iter().zip(sums.each()) {
-            numbers[at..at + count].copy_from_slice(&lanes[..count]);
+            let numbers = &mut numbers[at..at + count];
+            match numbers.first_chunk_mut() {
+                Some(all) => *all = *lanes,
+                None => numbers.copy_from_slice(&lanes[..count]),
+            }
         }
     }
 
     /// Roughness from each cell's own residuals, and from those of its parts.
     #[inline(always)]
-    fn hold_against_noise(&mut self, parts: Option<&Grid>, confidence: f32) {
-        let Grid { sums: Sums { n, squares, strain, .. }, variance, roughness, columns, .. } = self;
+    fn hold_against_noise(&mut self, parts: Option<&GridRows<'_>>, confidence: f32) {
+        let GridRows { sums: Sums { n, squares, strain, .. }, variance, roughness, columns, .. } = self;
         for at in 0..n.len() {
             let free = larger(n[at] - 3.0, 1.0);
             let own = squares[at] * n[at] / (free * limit(n[at], confidence));
             roughness[at] = larger(own, strain[at]) / variance[at];
         }
         if let Some(parts) = parts {
-            for (row, roughness) in roughness.chunks_exact_mut(*columns).take(self.rows).enumerate() {
+            for (row, roughness) in roughness.chunks_exact_mut(*columns).enumerate() {
                 let above = parts.roughness[2 * row * parts.columns..].as_chunks::<2>().0;
                 let below = parts.roughness[(2 * row + 1) * parts.columns..].as_chunks::<2>().0;
                 for ((roughness, above), below) in roughness.iter_mut().zip(above).zip(below) {
@@ -284,20 +380,7 @@ fn larger(a: f32, b: f32) -> f32 {
 
 #[inline(always)]
 fn no_sums() -> Sums<Lanes> {
-    let none = [0.0; LANES];
-    Sums {
-        n: none,
-        u: none,
-        v: none,
-        uu: none,
-        uv: none,
-        vv: none,
-        a: none,
-        b: none,
-        c: none,
-        squares: none,
-        strain: none,
-    }
+    Sums::of([[0.0; LANES]; 11])
 }
 
 /// A least-squares plane about a cell's middle.

@@ -1,0 +1,81 @@
+//! Work on parts of a whole, side by side.
+//!
+//! In: something that can be cut between its rows. Out: what the work on the parts gives, put together. Only for work
+//! whose answer does not depend on where the cuts are.
+
+/// Something made of rows.
+pub(crate) trait Rows: Sized + Send {
+    /// How many.
+    fn rows(&self) -> usize;
+    /// The first `rows`, and the others.
+    fn cut(self, rows: usize) -> (Self, Self);
+}
+
+/// Parts for each thread, so that one that has little to do can take from the others.
+const PARTS: usize = 4;
+
+/// Does the work on about `threads` times [`PARTS`] parts of a whole, or on the whole if there is one thread (or no
+/// feature `parallel`); `unite` puts neighbouring answers together.
+pub(crate) fn in_parts<W: Rows, A: Send>(
+    threads: usize,
+    whole: W,
+    work: impl Fn(W) -> A + Sync,
+    unite: impl Fn(A, A) -> A + Sync,
+) -> A {
+    let parts = if threads > 1 { threads * PARTS } else { 1 };
+    split(parts, whole, &work, &unite)
+}
+
+fn split<W: Rows, A: Send>(
+    parts: usize,
+    whole: W,
+    work: &(impl Fn(W) -> A + Sync),
+    unite: &(impl Fn(A, A) -> A + Sync),
+) -> A {
+    #[cfg(feature = "parallel")]
+    if parts.min(whole.rows()) > 1 {
+        let half = parts / 2;
+        let rows = (whole.rows() * half / parts).max(1);
+        let (first, second) = whole.cut(rows);
+        let (a, b) =
+            rayon::join(|| split(half, first, work, unite), || split(parts - half, second, work, unite));
+        return unite(a, b);
+    }
+    #[cfg(not(feature = "parallel"))]
+    let _ = (parts, unite);
+    work(whole)
+}
+
+impl<T: Send> Rows for &mut [T] {
+    fn rows(&self) -> usize {
+        self.len()
+    }
+
+    fn cut(self, rows: usize) -> (Self, Self) {
+        self.split_at_mut(rows)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_parts;
+
+    #[test]
+    fn every_row_is_worked_on_once_and_in_order() {
+        for rows in [0, 1, 2, 3, 7, 64] {
+            for threads in [1, 2, 3, 8] {
+                let mut all: Vec<usize> = (0..rows).collect();
+                let work = |part: &mut [usize]| {
+                    part.iter_mut().for_each(|row| *row += 1);
+                    part.to_vec()
+                };
+                let seen = in_parts(threads, &mut all[..], work, |mut a, b| {
+                    a.extend(b);
+                    a
+                });
+                assert_eq!(seen, (1..=rows).collect::<Vec<_>>(), "{rows} rows on {threads} threads");
+                assert_eq!(seen, all);
+            }
+        }
+    }
+}
