@@ -2,15 +2,22 @@
 //!
 //! In: the map and its labelled runs in raster order. Out: one [`Plane`] for each label. Two passes
 //! over the labelled pixels only: the first sums, the second, where a camera is known, measures
-//! distances from the fitted planes. Sums are taken in raster order, whatever the number of threads.
+//! distances from the fitted planes. Both are taken in parts of the map that threads share.
+
+mod distances;
+mod parts;
 
 use crate::camera::{Intrinsics, Measure, Sensor};
-use crate::detection::{CovarianceSource, MapFit, MetricPlane, PixelBox, Plane, share};
-use crate::fit::{self, AffineFit, LANES, Lanes, Moments, ValueSums, in_lanes};
+use crate::detection::{MapFit, PixelBox, Plane, share};
+use crate::fit::{AffineFit, Moments, ValueSums};
 use crate::group::vectorised;
 use crate::map::{DepthView, Pixel};
 use crate::noise::{NoiseModel, Patch};
+use crate::parallel::in_parts;
 use crate::select::LabelledRun;
+use distances::Distances;
+use parts::{ByLabel, runs_of_parts};
+use std::ops::Range;
 
 /// What the first pass knows of a plane.
 #[derive(Clone, Copy, Debug)]
@@ -27,25 +34,46 @@ pub struct Tally {
     pub fit: Option<AffineFit>,
     /// Least-squares plane in inverse depth, 1/m, where that is known.
     inverse_depth: Option<AffineFit>,
+    /// Its first pixel.
+    origin: [f64; 2],
+    value: Quantity<Moments>,
+    inverse: Quantity<Moments>,
+}
+
+/// Sums of one quantity about its value at the first pixel.
+#[derive(Clone, Copy, Debug, Default)]
+struct Quantity<S> {
+    first: f64,
+    sums: S,
+}
+
+/// What the first pass sums of the pixels of a plane in one part of the map.
+#[derive(Clone, Copy, Debug)]
+struct Sums {
+    pixel_count: usize,
+    inner_pixels: usize,
+    bounding_box: PixelBox,
     origin: [f64; 2],
     /// Where its pixels lie about `origin`.
     places: Moments,
-    value: Quantity,
-    inverse: Quantity,
-}
-
-/// Sums of one quantity about its value at the plane's first pixel.
-#[derive(Clone, Copy, Debug, Default)]
-struct Quantity {
-    first: f64,
-    sums: ValueSums,
+    value: Quantity<ValueSums>,
+    inverse: Quantity<ValueSums>,
 }
 
 /// Describes planes; reuses its memory from map to map.
 #[derive(Debug, Default)]
 pub struct Describer {
+    parts: Vec<Part>,
     tallies: Vec<Tally>,
     distances: Vec<Distances>,
+}
+
+/// What is summed in one part of the map.
+#[derive(Debug, Default)]
+struct Part {
+    runs: Range<usize>,
+    sums: ByLabel<Sums>,
+    distances: ByLabel<Distances>,
 }
 
 /// What the second pass has to know beside the pixels.
@@ -57,21 +85,6 @@ pub struct Seen<'a> {
     pub noise: Option<&'a NoiseModel>,
     /// Valid pixels of the map.
     pub valid_pixels: usize,
-}
-
-/// What the second pass sums for a plane.
-#[derive(Clone, Copy, Debug, Default)]
-struct Distances {
-    /// Sum of (z (q - q of the plane))^2.
-    squares: Lanes,
-    /// Sum of the points, metres.
-    point: [f64; 3],
-    /// The plane's part behind its pixels' squares, in units of `1 / (distance |fx fy|)`, m^3.
-    area: f64,
-    /// Whether some pixel's square reaches infinity on the plane.
-    reaches_infinity: bool,
-    /// Whether some pixel lies at or behind infinity, which leaves the plane without metric values.
-    behind_infinity: bool,
 }
 
 /// 1 / value, to within some units of the last place. Single precision and one step of Newton's method take a third of
@@ -87,10 +100,15 @@ fn reciprocal<T: Pixel>(value: T) -> f64 {
 }
 
 impl Describer {
-    /// First pass. Labels are 1, 2, .. in `runs`, and none is left out.
-    pub fn tally<T: Pixel>(&mut self, map: &DepthView<'_, T>, runs: &[LabelledRun], margin: u32, sensor: &Sensor) {
-        self.tallies.clear();
-        self.tallies.reserve(crate::select::MAX_PLANES.min(map.area()));
+    /// First pass, on as many threads. Labels are 1, 2, .. in `runs`, and none is left out.
+    pub fn tally<T: Pixel>(
+        &mut self,
+        map: &DepthView<'_, T>,
+        runs: &[LabelledRun],
+        margin: u32,
+        sensor: &Sensor,
+        threads: usize,
+    ) {
         let inner = Margin { margin, width: map.width() as u32, height: map.height() as u32 };
         // Planes of depth maps are affine in inverse depth; all others in the map's own values.
         let inverse = match (sensor.intrinsics, sensor.measure) {
@@ -100,41 +118,46 @@ impl Describer {
             }
             _ => None,
         };
-        vectorised(
-            #[inline(always)]
-            || self.sum(map, runs, inverse, &inner),
-        );
-        self.tallies.iter_mut().for_each(|tally| tally.finish(sensor));
-    }
-
-    #[inline(always)]
-    fn sum<T: Pixel>(
-        &mut self,
-        map: &DepthView<'_, T>,
-        runs: &[LabelledRun],
-        inverse: Option<impl Fn(T) -> f64 + Copy>,
-        inner: &Margin,
-    ) {
-        for run in runs {
-            let values = run.of(map);
-            let at = usize::from(run.label) - 1;
+        self.each_part(map, runs, threads, |part, runs, pixels| {
+            part.sums.clear(pixels);
+            vectorised(
+                #[inline(always)]
+                || sum(&mut part.sums, map, runs, inverse, &inner),
+            );
+        });
+        self.tallies.clear();
+        self.tallies.reserve(crate::select::MAX_PLANES.min(map.area()));
+        for (label, sums) in self.parts.iter().flat_map(|part| part.sums.each()) {
+            let at = usize::from(label) - 1;
             if at >= self.tallies.len() {
                 self.tallies.resize_with(at + 1, Tally::none);
             }
-            let tally = &mut self.tallies[at];
-            if tally.pixel_count == 0 {
-                tally.begin(run, values[0].into(), inverse.map_or(0.0, |inverse| inverse(values[0])));
-            }
-            tally.pixel_count += values.len();
-            tally.inner_pixels += inner.pixels(run);
-            tally.bounding_box.include(run);
-            let (u, v) = (f64::from(run.u_first) - tally.origin[0], f64::from(run.v) - tally.origin[1]);
-            tally.places.add_places(u, v, values.len());
-            tally.value.add(u, v, values, |value| value.into());
-            if let Some(inverse) = inverse {
-                tally.inverse.add(u, v, values, inverse);
-            }
+            self.tallies[at].add(sums);
         }
+        self.tallies.iter_mut().for_each(|tally| tally.finish(sensor));
+    }
+
+    /// Calls `work` for each part of the map with the part's runs and how many pixels it has, on as many threads.
+    fn each_part<T: Pixel>(
+        &mut self,
+        map: &DepthView<'_, T>,
+        runs: &[LabelledRun],
+        threads: usize,
+        work: impl Fn(&mut Part, &[LabelledRun], usize) + Sync,
+    ) {
+        let ranges = runs_of_parts(runs, [map.width(), map.height()]);
+        self.parts.resize_with(ranges.count(), Part::default);
+        let pixels = map.area().div_ceil(self.parts.len());
+        for (part, runs) in self.parts.iter_mut().zip(runs_of_parts(runs, [map.width(), map.height()])) {
+            part.runs = runs;
+        }
+        let work_on = |parts: &mut [Part]| {
+            for part in parts {
+                let runs = &runs[part.runs.clone()];
+                work(part, runs, pixels);
+            }
+        };
+        in_parts(threads, &mut self.parts[..], work_on, |(), ()| ());
     }
 
     /// The planes' tallies; label 1 is the first.
@@ -147,13 +170,14 @@ impl Describer {
         self.tallies.retain(keep);
     }
 
-    /// Second pass: the records, in order of label. Shares are taken of the map's `valid_pixels`, covariances from
-    /// the noise if it is known.
+    /// Second pass, on as many threads: the records, in order of label. Shares are taken of the map's `valid_pixels`,
+    /// covariances from the noise if it is known.
     pub fn describe<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
         runs: &[LabelledRun],
         seen: &Seen<'_>,
+        threads: usize,
         planes: &mut Vec<Plane>,
     ) {
         let Seen { sensor, valid_pixels, .. } = *seen;
@@ -162,13 +186,14 @@ impl Describer {
         self.distances.clear();
         match (sensor.intrinsics, sensor.measure) {
             (Some(camera), Measure::Depth { metres }) => {
-                self.measure_distances(map, runs, None, |value| metres * value.into());
+                self.measure_distances(map, runs, threads, None, |value| metres * value.into());
                 for (distances, tally) in self.distances.iter_mut().zip(&self.tallies) {
                     distances.point = tally.points(metres, &camera);
                 }
             }
             (Some(camera), Measure::InverseDepth { slope, offset }) => {
-                self.measure_distances(map, runs, Some(&camera), |value| (slope * value.into() + offset).recip());
+                let depth_m = |value: T| (slope * value.into() + offset).recip();
+                self.measure_distances(map, runs, threads, Some(&camera), depth_m);
             }
             _ => (),
         }
@@ -193,22 +218,72 @@ impl Describer {
         &mut self,
         map: &DepthView<'_, T>,
         runs: &[LabelledRun],
+        threads: usize,
         camera: Option<&Intrinsics>,
-        depth_m: impl Fn(T) -> f64,
+        depth_m: impl Fn(T) -> f64 + Sync,
     ) {
-        self.distances.reserve(self.tallies.capacity());
-        self.distances.resize(self.tallies.len(), Distances::default());
-        vectorised(
-            #[inline(always)]
-            || {
-                for run in runs {
-                    let at = usize::from(run.label) - 1;
-                    if let Some(plane) = &self.tallies[at].inverse_depth {
-                        self.distances[at].add(run, run.of(map), plane, camera, &depth_m);
+        let tallies = std::mem::take(&mut self.tallies);
+        self.each_part(map, runs, threads, |part, runs, pixels| {
+            part.distances.clear(pixels);
+            vectorised(
+                #[inline(always)]
+                || {
+                    for run in runs {
+                        if let Some(plane) = &tallies[usize::from(run.label) - 1].inverse_depth {
+                            let distances = part.distances.of(run.label, Distances::default);
+                            distances.add(run, run.of(map), plane, camera, &depth_m);
+                        }
                     }
-                }
-            },
-        );
+                },
+            );
+        });
+        self.distances.reserve(tallies.capacity());
+        self.distances.resize(tallies.len(), Distances::default());
+        self.tallies = tallies;
+        for (label, distances) in self.parts.iter().flat_map(|part| part.distances.each()) {
+            self.distances[usize::from(label) - 1].merge(distances);
+        }
+    }
+}
+
+/// Sums the pixels of labelled runs.
+#[inline(always)]
+fn sum<T: Pixel>(
+    by_label: &mut ByLabel<Sums>,
+    map: &DepthView<'_, T>,
+    runs: &[LabelledRun],
+    inverse: Option<impl Fn(T) -> f64 + Copy>,
+    inner: &Margin,
+) {
+    for run in runs {
+        let values = run.of(map);
+        let sums = by_label.of(run.label, || {
+            Sums::beginning(run, values[0].into(), inverse.map_or(0.0, |inverse| inverse(values[0])))
+        });
+        sums.pixel_count += values.len();
+        sums.inner_pixels += inner.pixels(run);
+        sums.bounding_box.include(run);
+        let (u, v) = (f64::from(run.u_first) - sums.origin[0], f64::from(run.v) - sums.origin[1]);
+        sums.places.add_places(u, v, values.len());
+        sums.value.add(u, v, values, |value| value.into());
+        if let Some(inverse) = inverse {
+            sums.inverse.add(u, v, values, inverse);
+        }
+    }
+}
+
+impl Sums {
+    /// Without a pixel, about a run's first.
+    fn beginning(run: &LabelledRun, value: f64, inverse: f64) -> Self {
+        Sums {
+            pixel_count: 0,
+            inner_pixels: 0,
+            bounding_box: PixelBox::NOTHING,
+            origin: [run.u_first.into(), run.v.into()],
+            places: Moments::default(),
+            value: Quantity { first: value, sums: ValueSums::default() },
+            inverse: Quantity { first: inverse, sums: ValueSums::default() },
+        }
     }
 }
 
@@ -218,40 +293,45 @@ impl Tally {
         Tally {
             pixel_count: 0,
             inner_pixels: 0,
-            bounding_box: PixelBox { u_min: u32::MAX, v_min: u32::MAX, u_max: 0, v_max: 0 },
+            bounding_box: PixelBox::NOTHING,
             centroid: [0.0; 2],
             fit: None,
             inverse_depth: None,
             origin: [0.0; 2],
-            places: Moments::default(),
             value: Quantity::default(),
             inverse: Quantity::default(),
         }
     }
 
-    fn begin(&mut self, run: &LabelledRun, value: f64, inverse: f64) {
-        self.origin = [run.u_first.into(), run.v.into()];
-        self.value.first = value;
-        self.inverse.first = inverse;
+    /// Adds what was summed of some of its pixels.
+    fn add(&mut self, sums: &Sums) {
+        if self.pixel_count == 0 {
+            self.origin = sums.origin;
+            (self.value.first, self.inverse.first) = (sums.value.first, sums.inverse.first);
+        }
+        self.pixel_count += sums.pixel_count;
+        self.inner_pixels += sums.inner_pixels;
+        self.bounding_box.unite(&sums.bounding_box);
+        let off = [0, 1].map(|axis| sums.origin[axis] - self.origin[axis]);
+        self.value.merge(&sums.value, &sums.places, off);
+        self.inverse.merge(&sums.inverse, &sums.places, off);
     }
 
     fn finish(&mut self, sensor: &Sensor) {
         let [u, v] = self.origin;
-        let places = &self.places;
+        let places = &self.value.sums;
         self.centroid = [u + places.u / places.n, v + places.v / places.n];
-        self.fit = self.value.fit(places, self.origin);
+        self.fit = self.value.fit(self.origin);
         self.inverse_depth = match sensor.measure {
-            Measure::Depth { .. } => self.inverse.fit(places, self.origin),
+            Measure::Depth { .. } => self.inverse.fit(self.origin),
             Measure::InverseDepth { slope, offset } => self.fit.map(|fit| fit.scaled(slope, offset)),
             Measure::Disparity => None,
         };
     }
-}
 
-impl Tally {
     /// Sum of its points, metres, if its values are depths.
     fn points(&self, metres: f64, camera: &Intrinsics) -> [f64; 3] {
-        let (first, sums) = (self.value.first, self.places.with(&self.value.sums));
+        let Quantity { first, sums } = &self.value;
         let ray = camera.ray(self.origin[0], self.origin[1]);
         let z = sums.q + first * sums.n;
         let (uz, vz) = (sums.uq + first * sums.u, sums.vq + first * sums.v); // about the origin
@@ -280,19 +360,35 @@ impl Tally {
     }
 }
 
-impl Quantity {
+impl Quantity<ValueSums> {
     #[inline(always)]
     fn add<T: Copy>(&mut self, u: f64, v: f64, values: &[T], quantity: impl Fn(T) -> f64) {
         let first = self.first;
         self.sums.add(u, v, values, |value| quantity(value) - first);
     }
+}
 
-    fn fit(&self, places: &Moments, [u, v]: [f64; 2]) -> Option<AffineFit> {
-        places.with(&self.sums).fit().map(|fit| fit.moved([u, v, self.first]))
+impl Quantity<Moments> {
+    /// Adds sums of other pixels, whose origin is off by so much.
+    fn merge(&mut self, other: &Quantity<ValueSums>, places: &Moments, [u, v]: [f64; 2]) {
+        self.sums.merge(&places.with(&other.sums).moved([u, v, other.first - self.first]));
+    }
+
+    fn fit(&self, [u, v]: [f64; 2]) -> Option<AffineFit> {
+        self.sums.fit().map(|fit| fit.moved([u, v, self.first]))
     }
 }
 
 impl PixelBox {
+    const NOTHING: PixelBox = PixelBox { u_min: u32::MAX, v_min: u32::MAX, u_max: 0, v_max: 0 };
+
+    fn unite(&mut self, other: &PixelBox) {
+        self.u_min = self.u_min.min(other.u_min);
+        self.u_max = self.u_max.max(other.u_max);
+        self.v_min = self.v_min.min(other.v_min);
+        self.v_max = self.v_max.max(other.v_max);
+    }
+
     fn include(&mut self, run: &LabelledRun) {
         self.u_min = self.u_min.min(run.u_first);
         self.u_max = self.u_max.max(run.u_last);
@@ -316,90 +412,5 @@ impl Margin {
         }
         let (first, end) = (run.u_first.max(self.margin), (run.u_last + 1).min(self.width.saturating_sub(self.margin)));
         end.saturating_sub(first) as usize
-    }
-}
-
-impl Distances {
-    #[inline(always)]
-    fn add<T: Pixel>(
-        &mut self,
-        run: &LabelledRun,
-        values: &[T],
-        plane: &AffineFit,
-        camera: Option<&Intrinsics>,
-        depth_m: impl Fn(T) -> f64,
-    ) {
-        let (u, v) = (f64::from(run.u_first), f64::from(run.v));
-        let (first, slope) = (plane.at(u, v), plane.abc[0]);
-        let mut squares = [0.0; LANES];
-        in_lanes(
-            values,
-            |k, value| 1.0 - depth_m(value) * (first + slope * k), // z (q - q of the plane)
-            #[inline(always)]
-            |_, relative| (0..LANES).for_each(|lane| squares[lane] += relative[lane] * relative[lane]),
-        );
-        (0..LANES).for_each(|lane| self.squares[lane] += squares[lane]);
-        let is_behind = |z: f64| !(z > 0.0 && z < f64::INFINITY);
-        if !T::IS_INTEGER || camera.is_some() {
-            self.behind_infinity |= values.iter().fold(false, |any, &value| any | is_behind(depth_m(value)));
-        }
-        if let Some(camera) = camera {
-            let mut sums = [[0.0; LANES]; 2];
-            in_lanes(
-                values,
-                |_, value| depth_m(value),
-                #[inline(always)]
-                |k, depth| {
-                    for lane in 0..LANES {
-                        sums[0][lane] += depth[lane];
-                        sums[1][lane] += k[lane] * depth[lane];
-                    }
-                },
-            );
-            let ([depth, by_k], ray) = (sums.map(|lanes| lanes.iter().sum::<f64>()), camera.ray(u, v));
-            self.point[0] += ray[0] * depth + by_k / camera.fx;
-            self.point[1] += ray[1] * depth;
-            self.point[2] += depth;
-        }
-        self.add_area(run, plane);
-    }
-
-    /// Adds the area of the plane's part behind the squares of a run of pixels.
-    ///
-    /// With the rays r of a triangle's corners, `|det(r1, r2, r3)| / (6 q1 q2 q3)` is the volume of
-    /// the pyramid from the camera over the triangle on the plane, a third of its area times the
-    /// camera's distance; the determinant is twice the triangle's area on the picture over
-    /// `|fx fy|`. A run's rectangle is two triangles that share two corners, and q is affine, so
-    /// that they add up to `pixels q(middle) / (distance |fx fy| q1 q2 q3 q4)`.
-    #[inline(always)]
-    fn add_area(&mut self, run: &LabelledRun, plane: &AffineFit) {
-        let (left, right) = (f64::from(run.u_first) - 0.5, f64::from(run.u_last) + 0.5);
-        let (top, bottom) = (f64::from(run.v) - 0.5, f64::from(run.v) + 0.5);
-        let corners = [plane.at(left, top), plane.at(right, top), plane.at(left, bottom), plane.at(right, bottom)];
-        let middle = 0.25 * corners.iter().sum::<f64>();
-        self.area += (right - left) * middle / corners.iter().product::<f64>();
-        self.reaches_infinity |= corners.iter().any(|&q| q <= 0.0);
-    }
-
-    /// The metric plane: a point's distance from it is z |q - q of the plane| times the plane's
-    /// distance from the camera, since n . P + d = d (1 - z m . r).
-    fn metric(&self, tally: &Tally, seen: &Seen<'_>) -> Option<MetricPlane> {
-        let camera = &seen.sensor.intrinsics?;
-        let fit = tally.inverse_depth.filter(|_| !self.behind_infinity)?;
-        let plane = fit::hessian(&fit, camera)?;
-        let n = tally.pixel_count as f64;
-        let (covariance, covariance_from) = match seen.noise.and_then(|noise| tally.covariance_by(noise, seen.sensor)) {
-            Some(covariance) => (covariance, CovarianceSource::Noise),
-            None => (fit.covariance(), CovarianceSource::Residuals),
-        };
-        let area = self.area / (plane.distance * (camera.fx * camera.fy).abs());
-        Some(MetricPlane {
-            plane,
-            rms_m: (self.squares.iter().sum::<f64>() / n).sqrt() * plane.distance,
-            centroid_m: self.point.map(|sum| sum / n),
-            area_m2: Some(area).filter(|area| !self.reaches_infinity && area.is_finite()),
-            covariance: fit::metric_covariance(fit.abc, &covariance, camera),
-            covariance_from,
-        })
     }
 }

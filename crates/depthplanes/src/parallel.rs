@@ -37,8 +37,7 @@ fn split<W: Rows, A: Send>(
         let half = parts / 2;
         let rows = (whole.rows() * half / parts).max(1);
         let (first, second) = whole.cut(rows);
-        let (a, b) =
-            rayon::join(|| split(half, first, work, unite), || split(parts - half, second, work, unite));
+        let (a, b) = rayon::join(|| split(half, first, work, unite), || split(parts - half, second, work, unite));
         return unite(a, b);
     }
     #[cfg(not(feature = "parallel"))]

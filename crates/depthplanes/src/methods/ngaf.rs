@@ -231,7 +231,7 @@ impl Runner {
         job.done("select");
         watch.selected(&map, groups, selection);
         let mut runs = selection.runs(groups);
-        describer.tally(&map, runs, params.margin, &job.sensor);
+        describer.tally(&map, runs, params.margin, &job.sensor, job.threads);
         watch.described(describer.tallies());
         if params.has_conditions() {
             selection.retain(groups, |index| params.accepts(&describer.tallies()[index]));
@@ -244,8 +244,9 @@ impl Runner {
             .noise
             .and_then(|noise| NoiseModel::new(job.sensor.measure, noise, if T::IS_INTEGER { 1.0 } else { 0.0 }));
         let seen = Seen { sensor: &job.sensor, noise: noise.as_ref(), valid_pixels: valid };
-        describer.describe(&map, runs, &seen, &mut out.planes);
-        let mut records = Records { map: &map, groups, margin: params.margin, seen, selection, describer };
+        describer.describe(&map, runs, &seen, job.threads, &mut out.planes);
+        let mut records =
+            Records { map: &map, groups, margin: params.margin, seen, threads: job.threads, selection, describer };
         records.join(job.joiner.as_deref_mut(), out);
         job.done("fit");
         selection.paint(groups, &mut out.labels);

@@ -16,6 +16,7 @@ pub(super) struct Records<'a, T> {
     pub(super) groups: &'a Groups,
     pub(super) margin: u32,
     pub(super) seen: Seen<'a>,
+    pub(super) threads: usize,
     pub(super) selection: &'a mut Selection,
     pub(super) describer: &'a mut Describer,
 }
@@ -23,7 +24,7 @@ pub(super) struct Records<'a, T> {
 impl<T: Pixel> Records<'_, T> {
     /// Joins coplanar planes, if that is wanted, and fits their unions anew from all pixels.
     pub(super) fn join(&mut self, joiner: Option<&mut Joiner>, out: &mut Detection) {
-        let Records { map, groups, margin, seen, selection, describer } = self;
+        let Records { map, groups, margin, seen, threads, selection, describer } = self;
         let Some(joiner) = joiner else { return };
         let is_any_joined = joiner.join(&out.planes, selection.runs(groups));
         joiner.parts(&out.planes, &mut out.parts);
@@ -32,8 +33,8 @@ impl<T: Pixel> Records<'_, T> {
         }
         selection.relabel(|label| joiner.labels()[usize::from(label) - 1]);
         let runs = selection.runs(groups);
-        describer.tally(map, runs, *margin, seen.sensor);
-        describer.describe(map, runs, seen, &mut out.planes);
+        describer.tally(map, runs, *margin, seen.sensor, *threads);
+        describer.describe(map, runs, seen, *threads, &mut out.planes);
     }
 
     /// Drops planes of less than an area in square metres, and those without metres. One that reaches infinity has

@@ -53,7 +53,7 @@ impl Runner {
             DepthView::with_stride(&image[..field.stride * map.height()], map.width(), map.height(), field.stride)?;
         let groups = grouper.group(&ids, &LinkRule::new(ids.validity(), 0.0)?, job.threads);
         selection.select(groups, params.min)?;
-        describer.tally(map, selection.runs(groups), 0, &job.sensor);
+        describer.tally(map, selection.runs(groups), 0, &job.sensor, job.threads);
         let Curved { mut labels, mut regions } = old.unwrap_or_default();
         selection.paint(groups, &mut labels);
         regions.clear();

@@ -239,10 +239,10 @@ impl Runner {
         selection.select(groups, params.min)?;
         job.done("select");
         let runs = selection.runs(groups);
-        describer.tally(&map, runs, 0, &job.sensor);
+        describer.tally(&map, runs, 0, &job.sensor, job.threads);
         let seen = Seen { sensor: &job.sensor, noise: Some(&noise), valid_pixels: field.valid_pixels };
-        describer.describe(&map, runs, &seen, &mut out.planes);
-        let mut records = Records { map: &map, groups, margin: 0, seen, selection, describer };
+        describer.describe(&map, runs, &seen, job.threads, &mut out.planes);
+        let mut records = Records { map: &map, groups, margin: 0, seen, threads: job.threads, selection, describer };
         records.join(job.joiner.as_deref_mut(), out);
         if params.min_area > 0.0 {
             records.drop_smaller(params.min_area, out);
