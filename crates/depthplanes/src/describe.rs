@@ -14,7 +14,7 @@ use crate::group::vectorised;
 use crate::map::{DepthView, Pixel};
 use crate::noise::{NoiseModel, Patch};
 use crate::parallel::in_parts;
-use crate::select::LabelledRun;
+use crate::select::{LabelledRun, MAX_PLANES};
 use distances::Distances;
 use parts::{ByLabel, runs_of_parts};
 use std::ops::Range;
@@ -118,15 +118,15 @@ impl Describer {
             }
             _ => None,
         };
-        self.each_part(map, runs, threads, |part, runs, pixels| {
-            part.sums.clear(pixels);
+        self.each_part(map, runs, threads, |part, runs, room| {
+            part.sums.clear(room);
             vectorised(
                 #[inline(always)]
                 || sum(&mut part.sums, map, runs, inverse, &inner),
             );
         });
         self.tallies.clear();
-        self.tallies.reserve(crate::select::MAX_PLANES.min(map.area()));
+        self.tallies.reserve(MAX_PLANES.min(map.area()));
         for (label, sums) in self.parts.iter().flat_map(|part| part.sums.each()) {
             let at = usize::from(label) - 1;
             if at >= self.tallies.len() {
@@ -137,7 +137,8 @@ impl Describer {
         self.tallies.iter_mut().for_each(|tally| tally.finish(sensor));
     }
 
-    /// Calls `work` for each part of the map with the part's runs and how many pixels it has, on as many threads.
+    /// Calls `work` for each part of the map with the part's runs and how many labels to make room for, on as many
+    /// threads: all parts together have room for as many as there can be.
     fn each_part<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
@@ -147,14 +148,14 @@ impl Describer {
     ) {
         let ranges = runs_of_parts(runs, [map.width(), map.height()]);
         self.parts.resize_with(ranges.count(), Part::default);
-        let pixels = map.area().div_ceil(self.parts.len());
+        let room = MAX_PLANES.min(map.area()).div_ceil(self.parts.len());
         for (part, runs) in self.parts.iter_mut().zip(runs_of_parts(runs, [map.width(), map.height()])) {
             part.runs = runs;
         }
         let work_on = |parts: &mut [Part]| {
             for part in parts {
                 let runs = &runs[part.runs.clone()];
-                work(part, runs, pixels);
+                work(part, runs, room);
             }
         };
         in_parts(threads, &mut self.parts[..], work_on, |(), ()| ());
@@ -223,8 +224,8 @@ impl Describer {
         depth_m: impl Fn(T) -> f64 + Sync,
     ) {
         let tallies = std::mem::take(&mut self.tallies);
-        self.each_part(map, runs, threads, |part, runs, pixels| {
-            part.distances.clear(pixels);
+        self.each_part(map, runs, threads, |part, runs, room| {
+            part.distances.clear(room);
             vectorised(
                 #[inline(always)]
                 || {

@@ -7,9 +7,6 @@ use std::ops::Range;
 
 /// Pixels of a part, at most (but for a part of one row).
 const PIXELS: usize = 1 << 18;
-/// Records that there is room for from the start, if there are as many pixels.
-const ROOM: usize = 1 << 13;
-
 /// Records by label, in order of first sight.
 #[derive(Debug)]
 pub(super) struct ByLabel<T> {
@@ -26,15 +23,15 @@ impl<T> Default for ByLabel<T> {
 }
 
 impl<T> ByLabel<T> {
-    /// Leaves no record, and makes room for those of so many pixels.
-    pub(super) fn clear(&mut self, pixels: usize) {
+    /// Leaves no record, and makes room for so many.
+    pub(super) fn clear(&mut self, room: usize) {
         self.number.resize(MAX_PLANES + 1, 0);
         for label in self.labels.drain(..) {
             self.number[usize::from(label)] = 0;
         }
         self.records.clear();
-        self.labels.reserve(ROOM.min(pixels));
-        self.records.reserve(ROOM.min(pixels));
+        self.labels.reserve(room);
+        self.records.reserve(room);
     }
 
     /// A label's record, a new one at first sight.

@@ -199,6 +199,17 @@ impl Grid {
         }
     }
 
+    /// The next column of a row, from `first` on, whose cell has no region.
+    #[inline(always)]
+    pub(super) fn next_free(&self, row: usize, first: usize) -> Option<usize> {
+        let row = &self.region[row * self.columns..][..self.columns];
+        // Most cells have one: eight are passed over at a time.
+        let (eights, _) = row[first..].as_chunks::<8>();
+        let is_taken = |cells: &[u32; 8]| cells.iter().fold(true, |all, &id| all & (id != NONE));
+        let passed = first + 8 * eights.iter().position(|cells| !is_taken(cells)).unwrap_or(eights.len());
+        Some(passed + row[passed..].iter().position(|&id| id == NONE)?)
+    }
+
     /// The four neighbours of a cell.
     #[inline(always)]
     pub(super) fn neighbours(&self, Place { column, row }: Place) -> impl Iterator<Item = Place> + use<> {

@@ -131,9 +131,11 @@ impl Regions {
             return;
         }
         for row in 0..grid.rows {
-            for column in 0..grid.columns {
-                if grid.region[row * grid.columns + column] == NONE {
-                    let place = Place { row: row as u32, column: column as u32 };
+            let mut next = 0;
+            while let Some(column) = grid.next_free(row, next) {
+                next = column + 1;
+                let place = Place { row: row as u32, column: column as u32 };
+                if may_join(grid, grid.at(place), only_flat) {
                     for beside in grid.neighbours(place) {
                         let id = grid.region[grid.at(beside)];
                         if id != NONE && self.take(grid, id, place, only_flat, confidence) {
@@ -151,9 +153,11 @@ impl Regions {
         let least = LEAST * (grid.side * grid.side) as f32;
         self.seeds.clear();
         for row in 0..grid.rows {
-            for column in 0..grid.columns {
+            let mut next = 0;
+            while let Some(column) = grid.next_free(row, next) {
+                next = column + 1;
                 let at = row * grid.columns + column;
-                if grid.region[at] == NONE && grid.roughness[at] <= 1.0 && grid.pixels(at) >= least {
+                if grid.roughness[at] <= 1.0 && grid.pixels(at) >= least {
                     self.seeds.push((grid.scatter(at), Place { row: row as u32, column: column as u32 }));
                 }
             }
@@ -179,7 +183,8 @@ impl Regions {
             next += 1;
             let id = grid.region[grid.at(place)];
             for beside in grid.neighbours(place) {
-                if grid.region[grid.at(beside)] == NONE {
+                let at = grid.at(beside);
+                if grid.region[at] == NONE && may_join(grid, at, only_flat) {
                     self.take(grid, id, beside, only_flat, confidence);
                 }
             }
@@ -189,14 +194,18 @@ impl Regions {
     /// Gives a cell to a region and to the queue, if it lies on its plane.
     #[inline(always)]
     fn take(&mut self, grid: &mut Grid, id: u32, place: Place, only_flat: bool, confidence: f64) -> bool {
-        let at = grid.at(place);
-        let takes = grid.pixels(at) >= 3.0
-            && !(only_flat && grid.roughness[at] > 1.0)
-            && self.all[id as usize].takes(&grid.cell(place), only_flat, confidence);
+        let takes = self.all[id as usize].takes(&grid.cell(place), only_flat, confidence);
         if takes {
+            let at = grid.at(place);
             grid.region[at] = id;
             self.queue.push(place);
         }
         takes
     }
+}
+
+/// Whether a cell has what it takes to join a region.
+#[inline(always)]
+fn may_join(grid: &Grid, at: usize, only_flat: bool) -> bool {
+    grid.pixels(at) >= 3.0 && (!only_flat || grid.roughness[at] <= 1.0)
 }

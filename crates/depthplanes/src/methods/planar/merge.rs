@@ -110,14 +110,22 @@ impl Merger {
             }
         };
         for row in 0..*rows {
-            for column in 0..*columns {
-                let at = row * columns + column;
-                for (step, room) in [(1, columns - 1 - column), (*columns, rows - 1 - row)] {
-                    if region[at] != NONE && room > 0 && region[at + step] != region[at] {
-                        let is_gap = region[at + step] == NONE && room > 1;
-                        let beside = region[if is_gap { at + 2 * step } else { at + step }];
-                        if beside != NONE && beside != region[at] {
-                            touch(region[at], beside, column, row);
+            let own = row * columns;
+            let below = own + if row + 1 < *rows { *columns } else { 0 };
+            let (here, below) = (&region[own..own + columns], &region[below..below + columns]);
+            for first in (0..*columns).step_by(ABREAST) {
+                if is_alike(here, below, first) {
+                    continue;
+                }
+                for column in first..(first + ABREAST).min(*columns) {
+                    let at = own + column;
+                    for (step, room) in [(1, columns - 1 - column), (*columns, rows - 1 - row)] {
+                        if region[at] != NONE && room > 0 && region[at + step] != region[at] {
+                            let is_gap = region[at + step] == NONE && room > 1;
+                            let beside = region[if is_gap { at + 2 * step } else { at + step }];
+                            if beside != NONE && beside != region[at] {
+                                touch(region[at], beside, column, row);
+                            }
                         }
                     }
                 }
@@ -184,6 +192,17 @@ impl Merger {
         into.clear();
         into.extend(0..regions.all.len() as u32);
     }
+}
+
+/// Tiles of a row that are looked at together.
+const ABREAST: usize = 16;
+
+/// Whether each tile of [`ABREAST`] and those to the right and below are of one region.
+#[inline(always)]
+fn is_alike(here: &[u32], below: &[u32], first: usize) -> bool {
+    let parts = [&here[first..], here.get(first + 1..).unwrap_or(&[]), &below[first..]];
+    let [Some(own), Some(right), Some(below)] = parts.map(|part| part.first_chunk::<ABREAST>()) else { return false };
+    own.iter().zip(right).zip(below).fold(true, |all, ((own, right), below)| all & (own == right) & (own == below))
 }
 
 /// Makes one pair of those that are the same.
