@@ -138,7 +138,8 @@ impl Facets {
             let [a, b] = pair.ids;
             let is_larger = boxes[a as usize].area() < boxes[b as usize].area();
             let [small, large] = if is_larger { [a, b] } else { [b, a] };
-            if scene.is_sharp(small, large) || bows[small as usize] + bows[large as usize] < GAIN {
+            let is_known = [small, large].iter().all(|&id| signs[id as usize].is_some());
+            if is_known || scene.is_sharp(small, large) || bows[small as usize] + bows[large as usize] < GAIN {
                 continue;
             }
             if let Some(seen) = scene.joint(small, |id| id == large).is_smooth() {

@@ -207,5 +207,5 @@ impl Regions {
 /// Whether a cell has what it takes to join a region.
 #[inline(always)]
 fn may_join(grid: &Grid, at: usize, only_flat: bool) -> bool {
-    grid.pixels(at) >= 3.0 && (!only_flat || grid.roughness[at] <= 1.0)
+    grid.pixels(at) >= 3.0 && !(only_flat && grid.roughness[at] > 1.0)
 }
