@@ -83,7 +83,8 @@ def cases():
 def detect(program, data, case, repeat=None, overlay=None):
     """The record of one case."""
     _, _, file, _, theta, window, least, flags = case
-    command = [program, "detect", data / file, "--theta", theta, "--min", least, "--window", window, "--json", *flags]
+    command = [program, "detect", data / file, "--method", "ngaf", "--theta", theta, "--min", least, "--window", window,
+               "--json", *flags]
     command += ["--repeat", repeat] if repeat else []
     command += ["--overlay", overlay] if overlay else []
     ran = subprocess.run([str(word) for word in command], capture_output=True, text=True)
@@ -152,7 +153,7 @@ python benchmarks/paper_tables.py --program target/release/depthplanes --data DA
 DATA is a folder with the maps named below. Each row is the median of {repeat} repetitions of
 
 ```
-depthplanes detect DATA/FILE --theta THETA --min MIN --window WINDOW --json --repeat {repeat}
+depthplanes detect DATA/FILE --method ngaf --theta THETA --min MIN --window WINDOW --json --repeat {repeat}
 ```
 
 on one thread of {processor()}, {datetime.date.today()}; for 7-Scenes with `--missing 65535`.

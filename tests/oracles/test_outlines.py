@@ -32,7 +32,8 @@ def detect(program, folder, image, *flags):
     source, labels = folder / "map.pgm", folder / "labels.png"
     header = f"P5 {image.shape[1]} {image.shape[0]} 65535\n".encode()
     source.write_bytes(header + (1000 * image).astype(">u2").tobytes())
-    command = [program, "detect", source, "--theta", "0", "--min", "0", "--labels", labels, "--json", *flags]
+    command = [program, "detect", source, "--method", "ngaf", "--theta", "0", "--min", "0", "--labels", labels,
+               "--json", *flags]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
     return json.loads(done.stdout), cv2.imread(str(labels), cv2.IMREAD_UNCHANGED)
 
@@ -117,7 +118,7 @@ def test_outer_contours_are_those_of_opencv(program, tmp_path):
 
 def test_the_mesh_of_a_room_has_the_planes_areas(program, tmp_path, tell):
     mesh, room = tmp_path / "room.ply", "scene:room:seed=2,sensor=tof"
-    command = [program, "detect", room, "--method", "planar", "--json", "--outlines=0", "--mesh", mesh]
+    command = [program, "detect", room, "--json", "--outlines=0", "--mesh", mesh]
     planes = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["planes"]
     ply = PlyData.read(mesh)
     vertices = np.stack([ply["vertex"][axis] for axis in "xyz"], axis=1).astype(float)

@@ -15,7 +15,7 @@ def rows(data, start):
 def score(program, folder, source, truth, reading, lowest=1):
     """Detects, and scores the labels against the truth."""
     labels = folder / "labels.png"
-    detect = [program, "detect", source, "--method", "planar", "--labels", labels, *reading]
+    detect = [program, "detect", source, "--labels", labels, *reading]
     subprocess.run(detect, check=True, capture_output=True)
     command = [program, "score", truth, labels, "--json", "--truth-from", str(lowest)]
     (pair,) = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["pairs"]

@@ -98,9 +98,18 @@ impl Recipe {
     }
 }
 
+/// A parameter of another method: which has it, and what this one has.
 fn lacks(method: &MethodInfo, name: &str) -> Failure {
+    let owners = METHODS.iter().filter(|other| other.params.iter().any(|param| param.name == name));
+    let owners: Vec<String> = owners.map(|other| format!("--method {}", other.name)).collect();
     let has: Vec<String> = method.params.iter().map(|param| format!("--{}", param.name.replace('_', "-"))).collect();
-    Failure::request(format!("method `{}` has no parameter `{name}`; it has: {}", method.name, has.join(", ")))
+    Failure::request(format!(
+        "method `{}` has no parameter `{name}`; {} has it; `{}` has: {}",
+        method.name,
+        owners.join(" or "),
+        method.name,
+        has.join(", ")
+    ))
 }
 
 /// A detector and the sensor it was made for.

@@ -143,10 +143,10 @@ pub(crate) fn advice(report: &Report<'_>) -> Vec<String> {
     let mut notes = Vec::new();
     if detection.planes.is_empty() {
         notes.push(format!(
-            "{source}: no plane found with {}; `depthplanes params {}` says what these do, \
-             `depthplanes inspect` shows the map's values",
+            "{source}: no plane found by {name} ({}); `depthplanes params {name}` says what its parameters do, \
+             `depthplanes explain` why a pixel has no plane, `depthplanes inspect` shows the map's values",
             parameters(report),
-            report.method.name
+            name = report.method.name
         ));
     }
     notes.extend(units_advice(report));

@@ -58,7 +58,7 @@ fn demo_leaves_a_depth_map_and_every_output() {
 fn the_folder_of_the_demo_holds_one_map_and_many_planes_are_remarked_on() {
     let bench = Bench::new("demo_folder");
     bench.run(&["demo", "--out-dir", "d"]).ok();
-    let ran = bench.run(&["detect", "d", "--rows", "1"]);
+    let ran = bench.run(&["detect", "d", "--method", "ngaf", "--rows", "1"]);
     assert!(ran.out.starts_with("d/depth.png: "), "{ran:?}");
     assert!(ran.err.contains("theta 1 is 1 mm here") && ran.err.contains("try --theta 5"), "{ran:?}");
     assert!(!ran.ok().contains("labels.png"));

@@ -18,7 +18,7 @@ fn without_output_flags_a_table_is_printed() {
     let out = bench.run(&["detect", "map.pgm"]).ok();
     let lines: Vec<&str> = out.lines().collect();
     assert!(lines[0].starts_with("map.pgm: 32 x 24, "), "{out}");
-    assert!(lines[1].starts_with("ngaf (theta 1, min 32, window 0"), "{out}");
+    assert!(lines[1].starts_with("planar (defaults)"), "{out}");
     assert!(lines[1].ends_with("2 planes on 100.0 % of the valid pixels"), "{out}");
     assert!(
         lines[2].split_whitespace().eq("plane pixels share mean value per column per row rms columns rows".split(' '))
@@ -40,16 +40,26 @@ fn with_a_camera_the_table_is_in_metres() {
 #[test]
 fn json_of_one_map_is_one_document() {
     let bench = Bench::with_map("json");
-    let record = json(&bench.run(&["detect", "map.pgm", "--json", "--theta", "2", "--min", "10"]).ok());
+    let record = json(&bench.run(&["detect", "map.pgm", "--json", "--min", "10"]).ok());
     assert_eq!(record["schema"], "depthplanes.planes/1");
     assert_eq!(record["source"], "map.pgm");
-    assert_eq!(record["method"], "ngaf");
-    assert_eq!(record["parameters"]["theta"], 2.0);
+    assert_eq!(record["method"], "planar");
+    assert_eq!(record["parameters"]["confidence"], 3.0);
     assert_eq!(record["parameters"]["min"], 10);
     assert_eq!(record["valid_pixels"], 32 * 24 - 16);
     assert_eq!(record["planes"].as_array().unwrap().len(), 2);
     assert_eq!(record["planes"][0]["pixel_count"], 384);
     assert!(record.get("time_ms").is_none());
+}
+
+#[test]
+fn the_papers_method_is_there_by_its_name() {
+    let bench = Bench::with_map("by_name");
+    let words = ["detect", "map.pgm", "--method", "ngaf"];
+    assert!(bench.run(&words).ok().contains("\nngaf (theta 1, min 32, window 0): 2 planes on 100.0 %"));
+    let record = json(&bench.run(&[&words[..], &["--json", "--theta", "2", "--min", "10"]].concat()).ok());
+    assert_eq!(record["method"], "ngaf");
+    assert_eq!((&record["parameters"]["theta"], &record["parameters"]["min"]), (&2.0.into(), &10.into()));
 }
 
 #[test]
@@ -65,7 +75,7 @@ fn json_of_several_maps_is_one_line_each() {
 fn repeat_measures_the_whole_and_each_stage() {
     let bench = Bench::with_map("repeat");
     let record = json(&bench.run(&["detect", "map.pgm", "--json", "--repeat", "4"]).ok());
-    let stages = depthplanes::methods::find("ngaf").unwrap().stages;
+    let stages = depthplanes::methods::find("planar").unwrap().stages;
     let times = record["time_ms"].as_object().unwrap();
     assert_eq!(times.len(), stages.len() + 1);
     for name in stages.iter().chain([&"total"]) {
@@ -199,7 +209,7 @@ fn many_inputs_on_many_threads_give_the_same_as_one_by_one() {
 #[test]
 fn threads_do_not_change_the_answer() {
     let bench = Bench::new("threads");
-    let of = |threads| bench.run(&["detect", "scene:room", "--json", "--theta", "5", "--threads", threads]).ok();
+    let of = |threads| bench.run(&["detect", "scene:room", "--json", "--threads", threads]).ok();
     assert_eq!(of("1"), of("3"));
 }
 
@@ -265,8 +275,7 @@ fn disparities_with_a_rig_become_metric() {
 fn where_no_plane_is_found_it_says_what_to_try() {
     let bench = Bench::with_map("no_plane");
     let ran = bench.run(&["detect", "map.pgm", "--min", "100000"]);
-    assert!(ran.err.contains("no plane found with theta 1, min 100000"), "{ran:?}");
-    assert!(ran.err.contains("depthplanes params ngaf"), "{ran:?}");
+    assert!(ran.err.contains("no plane found by planar (min 100000); `depthplanes params planar`"), "{ran:?}");
     assert!(ran.ok().contains("0 planes"));
     bench.write("empty.pgm", &[b"P5 4 2 65535\n".to_vec(), vec![0; 16]].concat());
     let ran = bench.run(&["detect", "empty.pgm"]);
@@ -277,7 +286,7 @@ fn where_no_plane_is_found_it_says_what_to_try() {
 #[test]
 fn a_threshold_of_a_metre_is_remarked_on() {
     let bench = Bench::with_map("metre");
-    let ran = bench.run(&["detect", "map.pgm", "--scale", "1", "--encoding", "millimetre"]);
+    let ran = bench.run(&["detect", "map.pgm", "--method", "ngaf", "--scale", "1", "--encoding", "millimetre"]);
     assert!(ran.err.contains("theta 1 is 1 m here"), "{ran:?}");
 }
 
@@ -311,7 +320,8 @@ fn coplanar_pieces_are_joined_and_their_records_kept() {
     let mut bytes = b"P5 32 24 65535\n".to_vec();
     bytes.extend((0..32 * 24).flat_map(|at| value(at).to_be_bytes()));
     bench.write("gap.pgm", &bytes);
-    let words = ["detect", "gap.pgm", "--encoding", "millimetre", "--intrinsics", "30,30,15.5,11.5"];
+    let words =
+        ["detect", "gap.pgm", "--method", "ngaf", "--encoding", "millimetre", "--intrinsics", "30,30,15.5,11.5"];
     let run = |more: &[&str]| bench.run(&[&words[..], more].concat());
     let plain = json(&run(&["--json"]).ok());
     assert_eq!(plain["planes"].as_array().unwrap().len(), 3);
@@ -325,8 +335,7 @@ fn coplanar_pieces_are_joined_and_their_records_kept() {
     assert_eq!(planes[0]["parts"], serde_json::json!([plain["planes"][0], plain["planes"][1]]));
     assert!(planes[1].get("parts").is_none());
     assert!(run(&["--merge-coplanar=2,0.01"]).ok().contains("2 planes (1 joined of 2 parts) on 100.0 %"));
-    let room =
-        ["detect", "scene:room:seed=2,sensor=tof,size=320x240", "--method", "planar", "--merge-coplanar", "--json"];
+    let room = ["detect", "scene:room:seed=2,sensor=tof,size=320x240", "--merge-coplanar", "--json"];
     let large = json(&bench.run(&[&room[..], &["--min-area", "0.5"]].concat()).ok());
     assert_eq!(large["parameters"]["min-area"], 0.5);
     let areas: Vec<f64> =
@@ -339,7 +348,7 @@ fn what_needs_metres_says_how_to_state_the_camera() {
     let bench = Bench::with_map("not_metric");
     let err = bench.run(&["detect", "map.pgm", "--merge-coplanar"]).fails(2);
     assert!(err.contains("`merge-coplanar` needs planes in metres; state the camera's intrinsics: give --intrinsics"));
-    let err = bench.run(&["detect", "map.pgm", "--method", "planar", "--min-area", "1"]).fails(2);
+    let err = bench.run(&["detect", "map.pgm", "--min-area", "1"]).fails(2);
     assert!(err.contains("`min-area` needs planes in metres; state the camera's intrinsics: give --intrinsics"));
     let err = bench.run(&["detect", "map.pgm", "--disparity", "--merge-coplanar"]).fails(2);
     assert!(err.contains("state the rig's focal length and baseline: give --focal and --baseline"), "{err}");

@@ -96,8 +96,16 @@ fn run_document(path: &Path) {
 #[test]
 fn the_commands_of_the_docs_print_what_the_docs_say() {
     let _alone = DOCUMENTS.lock();
-    for document in ["docs/cli.md", "docs/ngaf.md", "docs/planar.md", "docs/noise.md", "docs/outlines.md", "README.md"]
-    {
+    for document in [
+        "docs/cli.md",
+        "docs/ngaf.md",
+        "docs/planar.md",
+        "docs/curved.md",
+        "docs/explain.md",
+        "docs/noise.md",
+        "docs/outlines.md",
+        "README.md",
+    ] {
         run_document(&root().join(document));
     }
 }
@@ -145,6 +153,8 @@ fn links_of_the_docs_lead_to_files() {
         "docs/cli.md",
         "docs/ngaf.md",
         "docs/planar.md",
+        "docs/curved.md",
+        "docs/explain.md",
         "docs/noise.md",
         "docs/metrics.md",
         "docs/outlines.md",

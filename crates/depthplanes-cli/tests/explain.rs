@@ -34,7 +34,7 @@ fn wrong_pixels_and_several_maps_are_refused() {
 fn curved_surfaces_are_counted_recorded_and_written() {
     let bench = Bench::new("curved");
     let scene = "scene:curved:sensor=tof,size=160x120";
-    let out = bench.run(&["detect", scene, "--method", "planar", "--curved", "--out-dir", "d"]).ok();
+    let out = bench.run(&["detect", scene, "--curved", "--out-dir", "d"]).ok();
     assert!(out.contains("surfaces that bend on"), "{out}");
     let of_scene = |end: &str| format!("d/scene_curved_sensor_tof_size_160x120.{end}");
     let record: Value = serde_json::from_slice(&bench.read(&of_scene("planes.json"))).unwrap();
@@ -45,7 +45,7 @@ fn curved_surfaces_are_counted_recorded_and_written() {
     let first = labels.iter().filter(|&&label| label == 1).count();
     assert_eq!(regions[0]["pixel_count"], first);
     // Without being asked it does none of this.
-    let plain = bench.run(&["detect", scene, "--method", "planar", "--json"]).ok();
+    let plain = bench.run(&["detect", scene, "--json"]).ok();
     assert!(serde_json::from_str::<Value>(&plain).unwrap().get("curved").is_none());
 }
 
@@ -53,7 +53,7 @@ fn curved_surfaces_are_counted_recorded_and_written() {
 fn a_method_that_does_not_tell_curved_surfaces_says_so() {
     let bench = Bench::with_map("curved_ngaf");
     for flags in [&["--curved"][..], &["--curved-labels", "c.png"]] {
-        let ran = bench.run(&[&["detect", "map.pgm"], flags].concat());
+        let ran = bench.run(&[&["detect", "map.pgm", "--method", "ngaf"], flags].concat());
         assert!(ran.fails(2).contains("`ngaf` does not tell surfaces that bend; --method planar does"));
     }
 }

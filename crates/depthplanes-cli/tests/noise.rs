@@ -87,14 +87,16 @@ fn detect_takes_the_noise_as_a_table() {
     let bench = Bench::new("noise_table");
     bench.write("tof.csv", b"range_m,sigma_m\n1,0.0023\n2,0.0062\n3,0.0127\n4,0.0218\n5,0.0335\n");
     let scene = "scene:room:sensor=tof";
-    let detect = ["detect", scene, "--method", "planar", "--json"];
+    let detect = ["detect", scene, "--json"];
     let with = |words: &[&str]| json(&bench.run(&[&detect[..], words].concat()).ok())["planes"].clone();
     let (by_table, by_flags) =
         (with(&["--noise-table", "tof.csv"]), with(&["--noise", "0.001", "--noise-growth", "0.0013"]));
     let (many, others) = (by_table.as_array().unwrap().len(), by_flags.as_array().unwrap().len());
     assert!(many.abs_diff(others) * 10 <= others, "{many} planes by the table, {others} by the formula");
-    let ngaf = json(&bench.run(&["detect", scene, "--theta", "30", "--json", "--noise-table", "tof.csv"]).ok());
+    let ngaf = json(
+        &bench.run(&["detect", scene, "--method", "ngaf", "--theta", "30", "--json", "--noise-table", "tof.csv"]).ok(),
+    );
     assert_eq!(ngaf["planes"][0]["metric"]["covariance_from"], "noise");
-    let ngaf = json(&bench.run(&["detect", scene, "--theta", "30", "--json"]).ok());
+    let ngaf = json(&bench.run(&["detect", scene, "--method", "ngaf", "--theta", "30", "--json"]).ok());
     assert_eq!(ngaf["planes"][0]["metric"]["covariance_from"], "residuals");
 }

@@ -133,7 +133,7 @@ fn a_measure_without_a_value_is_a_dash_null_and_not_in_the_mean() {
 fn what_detect_finds_in_a_scene_is_scored_against_its_truth() {
     let bench = Bench::new("score_scene");
     let scene = "scene:room:sensor=clean_mm,size=320x240";
-    bench.run(&["detect", scene, "--theta", "8", "--min", "300", "--labels", "labels.npy"]).ok();
+    bench.run(&["detect", scene, "--labels", "labels.npy"]).ok();
     let pair = json(&bench.run(&["score", scene, "labels.npy", "--json"]).ok())["pairs"][0].clone();
     assert_eq!(pair["truth"], scene);
     assert!(pair["segcomp"]["correct"].as_u64().unwrap() > 0, "{pair}");

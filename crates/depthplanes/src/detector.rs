@@ -6,9 +6,23 @@ use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::explanation::Explanation;
 use crate::map::AnyView;
-use crate::methods::{Job, Method};
+use crate::methods::{self, Job, Method};
 
 /// Finds planes in frame after frame; after the first frame of a size it allocates nothing.
+///
+/// [`Detector::default`] takes the default method, [`crate::Planar`], which needs no parameter.
+///
+/// ```
+/// use depthplanes::{DepthView, Detector};
+/// // Two walls with an edge between, 16-bit depth, 40 x 16 pixels.
+/// let depth_mm: Vec<u16> = (0..40 * 16).map(|at| if at % 40 < 20 { 1000 } else { 2000 }).collect();
+/// let found = Detector::default().detect(DepthView::new(&depth_mm, 40, 16)?)?.clone();
+/// assert_eq!(found.planes.len(), 2);
+/// assert_eq!(found.planes[0].pixel_count, 20 * 16);
+/// # Ok::<(), depthplanes::Error>(())
+/// ```
+///
+/// [`Detector::new`] takes the parameters of a method, here of the paper's:
 ///
 /// ```
 /// use depthplanes::{DepthView, Detector, Ngaf};
@@ -33,6 +47,14 @@ pub struct Detector {
     curved: bool,
     joiner: Option<Joiner>,
     detection: Detection,
+}
+
+impl Default for Detector {
+    /// A detector of the first of [`crate::methods::METHODS`] with its defaults, one thread, camera unknown.
+    fn default() -> Self {
+        let info = methods::default();
+        Self::from_method((info.build)(&info.defaults()).expect("a method accepts its own defaults"))
+    }
 }
 
 impl Detector {

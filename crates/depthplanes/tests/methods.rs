@@ -32,6 +32,7 @@ fn with(method: &MethodInfo, param: &Param, value: f64) -> Result<Box<dyn Method
 #[test]
 fn names_are_unique_and_kebab_case() {
     let names: Vec<_> = METHODS.iter().map(|method| method.name).collect();
+    assert_eq!((names[0], depthplanes::methods::default().name), ("planar", "planar"), "the default stands first");
     assert_eq!(names.iter().collect::<HashSet<_>>().len(), names.len(), "{names:?}");
     for method in METHODS {
         assert!(is_kebab_case(method.name), "{}", method.name);

@@ -185,3 +185,14 @@ fn threads_and_repetition_change_no_byte() {
         }
     }
 }
+
+#[test]
+fn flat_surfaces_of_one_value_each_are_planes_of_their_own() {
+    let (width, height) = (64, 48);
+    // Their distance in depth is no step of the sensor's.
+    let map: Vec<u16> = (0..width * height).map(|at| if at % width < 32 { 1003 } else { 1503 }).collect();
+    let mut detector = Detector::default();
+    let found = detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap();
+    let counts: Vec<usize> = found.planes.iter().map(|plane| plane.pixel_count).collect();
+    assert_eq!(counts, [32 * 48; 2]);
+}

@@ -84,7 +84,8 @@ pub(super) fn reading() -> Vec<Arg> {
     all.into_iter().map(|arg| with_long_name(arg).help_heading("Reading")).collect()
 }
 
-/// A flag for each parameter of any method; methods share the flags of the names they share.
+/// A flag for each parameter of any method; methods share the flags of the names they share. Whose it is stands before
+/// the meaning, unless all have it and mean the same.
 pub(super) fn method_parameters() -> Vec<Arg> {
     parameter_names().into_iter().map(method_parameter).collect()
 }
@@ -95,7 +96,7 @@ fn method_parameter(name: &'static str) -> Arg {
         owners.extend(method.params.iter().filter(|param| param.name == name).map(|param| (method.name, param)));
     }
     let said = |param: &Param| (param.meaning, param.unit, param.default);
-    let alike = owners.iter().all(|(_, param)| said(param) == said(owners[0].1));
+    let alike = owners.len() == METHODS.len() && owners.iter().all(|(_, param)| said(param) == said(owners[0].1));
     let shown = if alike { &owners[..1] } else { &owners[..] };
     let sentence = |(method, param): &(&str, &Param)| {
         let whose = if alike { String::new() } else { format!("{method}: ") };

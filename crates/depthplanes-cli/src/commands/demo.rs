@@ -13,12 +13,10 @@ use std::path::{Path, PathBuf};
 
 /// A furnished room without noise, in millimetres.
 const SCENE: &str = "room:sensor=clean_mm";
-/// The method that finds what is there without a parameter.
-const METHOD: &str = "planar";
 
 pub(super) fn run(folder: &Path, out: &mut dyn Write) -> Outcome {
     let frame = load::scene(SCENE)?;
-    let recipe = Recipe::new(methods::find(METHOD)?, &[], 1)?;
+    let recipe = Recipe::new(methods::default(), &[], 1)?;
     let found = Runner::new(&recipe).detect(&frame, 0)?;
     let source = format!("scene:{SCENE}");
     let report = Report {
@@ -59,7 +57,7 @@ fn tell(report: &Report<'_>, depth: &Path, files: &[(&Output, PathBuf)], out: &m
     let overlay = files.iter().find(|(output, _)| output.name == "overlay");
     let picture = overlay.map(|(_, path)| path.display().to_string()).unwrap_or_default();
     writeln!(out, "\nLook at {picture}. The same again from the file:")?;
-    write!(out, "  depthplanes detect {} --encoding millimetre --method {METHOD}", depth.display())?;
+    write!(out, "  depthplanes detect {} --encoding millimetre", depth.display())?;
     if let Some(Intrinsics { fx, fy, cx, cy }) = report.frame.sensor.intrinsics {
         write!(out, " --intrinsics {fx},{fy},{cx},{cy}")?;
     }

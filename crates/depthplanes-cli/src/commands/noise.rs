@@ -113,7 +113,7 @@ fn readable(found: &[(String, Estimate)], all: &Estimate) -> String {
     let mut text = aligned(&columns, &rows);
     text += &format!("\nStandard deviation of {what}.{steps}\n");
     text += &match flags(all) {
-        Some(flags) => format!("To use it: depthplanes detect --method planar {flags}\n"),
+        Some(flags) => format!("To use it: depthplanes detect {flags}\n"),
         None => "There is no noise beside rounding, and nothing to tell `detect`.\n".to_string(),
     };
     text

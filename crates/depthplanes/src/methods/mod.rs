@@ -18,7 +18,7 @@ pub use ngaf::Ngaf;
 pub use planar::Planar;
 
 /// All methods. The first is the default.
-pub static METHODS: &[&MethodInfo] = &[&ngaf::INFO, &planar::INFO];
+pub static METHODS: &[&MethodInfo] = &[&planar::INFO, &ngaf::INFO];
 
 /// One row of [`METHODS`].
 #[derive(Debug)]
@@ -148,6 +148,11 @@ pub fn find(name: &str) -> Result<&'static MethodInfo> {
         given: name.to_string(),
         accepted: names(METHODS.iter().map(|method| method.name)),
     })
+}
+
+/// The method to take where none is named: the first of [`METHODS`].
+pub fn default() -> &'static MethodInfo {
+    METHODS[0]
 }
 
 impl MethodInfo {

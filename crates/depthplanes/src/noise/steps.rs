@@ -11,6 +11,9 @@ const SAMPLE: usize = 1 << 15;
 const GROUP: usize = 32;
 /// Longest step that is told from longer ones, map units.
 const FAR: usize = 1023;
+/// Fewest distances that tell a step. Flat surfaces on which every pixel has one value make fewer, and theirs are jumps in
+/// depth.
+const LEAST: u32 = 8;
 
 /// Finds steps; reuses its memory.
 #[derive(Debug, Default)]
@@ -20,7 +23,7 @@ pub(crate) struct Steps {
 
 impl Steps {
     /// The lower quartile of the distances of neighbouring values that occur in rows spread over the map; 0 for
-    /// floating-point maps.
+    /// floating-point maps, 1 where too few values occur to tell.
     pub(crate) fn of<T: Pixel>(&mut self, map: &DepthView<'_, T>) -> f64 {
         if !T::IS_INTEGER {
             return 0.0;
@@ -28,6 +31,9 @@ impl Steps {
         self.look(map);
         let steps = self.steps();
         let count: u32 = steps.iter().sum();
+        if count < LEAST {
+            return 1.0;
+        }
         let mut smaller = 0;
         let quartile = (1..=FAR).find(|&step| {
             smaller += steps[step];
