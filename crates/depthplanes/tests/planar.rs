@@ -173,20 +173,6 @@ fn noise_of_which_no_plane_is_made_has_none() {
 }
 
 #[test]
-fn threads_and_repetition_change_no_byte() {
-    let frame = scene("room:sensor=kinect");
-    let mut first: Option<Detection> = None;
-    for threads in [1, 2, 4] {
-        let mut detector = Detector::new(Planar::default()).unwrap().sensor(frame.sensor).threads(threads);
-        for _ in 0..2 {
-            let found = detector.detect(frame.view()).unwrap();
-            assert!(first.as_ref().is_none_or(|first| first == found), "{threads} threads");
-            first = Some(found.clone());
-        }
-    }
-}
-
-#[test]
 fn flat_surfaces_of_one_value_each_are_planes_of_their_own() {
     let (width, height) = (64, 48);
     // Their distance in depth is no step of the sensor's.

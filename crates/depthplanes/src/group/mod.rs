@@ -18,6 +18,8 @@ mod strip;
 
 use crate::error::{Error, Result};
 use crate::map::{DepthView, Pixel, Validity};
+#[cfg(test)]
+pub(crate) use kernels::with_each_kernel;
 pub(crate) use kernels::{Compiled, Isa, vectorised};
 pub use kernels::{Kernel, kernels};
 #[cfg(feature = "parallel")]

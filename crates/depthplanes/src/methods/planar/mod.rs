@@ -16,6 +16,8 @@ mod level;
 mod merge;
 mod planes;
 mod quadratic;
+#[cfg(test)]
+mod tests;
 mod tiles;
 
 use super::records::Records;
