@@ -21,7 +21,7 @@ CARGO_FUZZ := target/tools/bin/cargo-fuzz
 say = @printf '\n== %s\n' '$(1)'
 
 .NOTPARALLEL:
-.PHONY: help demo test lint fmt format clippy rust-tests rustdoc oracles bench tables golden fuzz clean
+.PHONY: help demo test lint fmt format clippy rust-tests rustdoc oracles bench bench-planar tables golden fuzz clean
 
 help: ## List the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -67,6 +67,12 @@ oracles: $(VENV)
 bench: $(VENV) ## Measure against cc3d and OpenCV; writes benchmarks/record/MACHINE/DATE.csv
 	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes --examples
 	$(PY) benchmarks/run.py --rounds $(ROUNDS) --record "benchmarks/record/$(MACHINE)/$$(date +%F).csv"
+
+bench-planar: ## Time planar by stage, size and threads; writes benchmarks/record/MACHINE/planar-DATE.csv
+	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes --examples
+	mkdir -p "benchmarks/record/$(MACHINE)"
+	target/release/examples/bench_planar $(ROUNDS) > "benchmarks/record/$(MACHINE)/planar.partial"
+	mv "benchmarks/record/$(MACHINE)/planar.partial" "benchmarks/record/$(MACHINE)/planar-$$(date +%F).csv"
 
 tables: $(VENV) ## Write docs/paper-tables.md: the paper's tables on the same maps
 	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes-cli

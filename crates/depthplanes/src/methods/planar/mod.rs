@@ -16,6 +16,7 @@ mod level;
 mod merge;
 mod planes;
 mod quadratic;
+mod reach;
 #[cfg(test)]
 mod tests;
 mod tiles;
@@ -39,6 +40,7 @@ use grow::Regions;
 use level::Level;
 use merge::Merger;
 use planes::Planes;
+use reach::Reach;
 use tiles::{LEVELS, Pyramid};
 
 pub(super) static INFO: MethodInfo = MethodInfo {
@@ -177,6 +179,7 @@ struct Runner {
     facets: Facets,
     explainer: Explainer,
     image: Vec<u16>,
+    reach: Reach,
     bent: Bent,
     grouper: Grouper,
     selection: Selection,
@@ -296,11 +299,12 @@ impl Runner {
 
     /// The region of every pixel: its plane, or its curved region.
     fn assign(&mut self, noise: &NoiseModel, curved: bool, threads: usize) {
-        let Runner { params, field, pyramid, regions, image, .. } = self;
+        let Runner { params, field, pyramid, regions, image, reach, .. } = self;
         image.resize(field.q.len(), 0);
         pyramid.hand_up();
         let [tiles, blocks, ..] = &pyramid.grids;
         let planes = Planes { regions: &regions.all, noise, confidence: params.confidence, curved };
         assign::assign(field, [tiles, blocks], &planes, threads, image);
+        reach.reach(field, &planes, image);
     }
 }
