@@ -446,9 +446,10 @@ impl Seen {
 
 /// The label that most of a region's pixels have, 0 for none.
 fn label_of(run: &Runner, out: &Detection, id: u32) -> u16 {
+    let own_label = run.contacts.label(id);
     let mut counts = vec![0u32; out.planes.len() + 1];
     for (ids, labels) in run.image.chunks_exact(run.field.stride).zip(out.labels.chunks_exact(out.width)) {
-        let own = ids.iter().zip(labels).filter(|(own, label)| u32::from(**own) == id + 1 && **label > 0);
+        let own = ids.iter().zip(labels).filter(|(own, label)| **own == own_label && **label > 0);
         own.for_each(|(_, &label)| counts[usize::from(label)] += 1);
     }
     let best = (0..counts.len()).rev().max_by_key(|&label| counts[label]).filter(|&label| counts[label] > 0);

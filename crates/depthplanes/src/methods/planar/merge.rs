@@ -77,7 +77,11 @@ impl Merger {
     pub(super) fn drop_small(&mut self, grid: &mut Grid, regions: &mut Regions, least: f64) -> Result<()> {
         self.drop(grid, regions, |region| region.sums.n < least);
         match regions.all.len() {
-            found if found > MAX_PLANES => Err(Error::TooManyPlanes { found }),
+            found if found >= MAX_PLANES =>
+            // one label more is taken, [`super::planes::BENT`]
+            {
+                Err(Error::TooManyPlanes { found })
+            }
             _ => Ok(()),
         }
     }
@@ -218,7 +222,8 @@ fn unite(pairs: &mut Vec<Pair>) {
 }
 
 impl Region {
-    fn absorb(&mut self, other: &Region) {
+    /// Takes another region's pixels in.
+    pub(super) fn absorb(&mut self, other: &Region) {
         self.sums.merge(&self.sums_of(other));
         self.variance += other.variance;
         self.refit();
@@ -233,10 +238,10 @@ impl Region {
 
 /// Two regions are one plane if their joint plane adds no more than this to the mean squared residual of
 /// either, in variances.
-const BEND: f64 = 0.5;
+pub(super) const BEND: f64 = 0.5;
 
 /// What a joint plane adds to the mean squared residual of the region that it suits less, in variances.
-fn bend(a: &Region, b: &Region) -> f64 {
+pub(super) fn bend(a: &Region, b: &Region) -> f64 {
     let theirs = a.sums_of(b);
     let mut both = a.sums;
     both.merge(&theirs);

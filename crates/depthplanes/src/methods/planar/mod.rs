@@ -6,6 +6,7 @@
 
 mod assign;
 mod bent;
+mod contact;
 mod curved;
 mod explain;
 mod explained;
@@ -33,6 +34,7 @@ use crate::noise::{NoiseModel, SensorNoise, Space};
 use crate::select::Selection;
 use crate::with_view;
 use bent::Bent;
+use contact::Contacts;
 use curved::Facets;
 use explained::Explainer;
 use field::Field;
@@ -180,6 +182,7 @@ struct Runner {
     explainer: Explainer,
     image: Vec<u16>,
     reach: Reach,
+    contacts: Contacts,
     bent: Bent,
     grouper: Grouper,
     selection: Selection,
@@ -235,6 +238,7 @@ impl Runner {
         job.done("judge");
         self.assign(&noise, false, job.threads);
         watch(Moment::Assigned, self, &noise);
+        self.contacts.join(&self.field, &mut self.regions.all, &mut self.image);
         job.done("assign");
         let Runner { params, field, image, grouper, selection, describer, .. } = self;
         let ids =
@@ -305,6 +309,8 @@ impl Runner {
         let [tiles, blocks, ..] = &pyramid.grids;
         let planes = Planes { regions: &regions.all, noise, confidence: params.confidence, curved };
         assign::assign(field, [tiles, blocks], &planes, threads, image);
-        reach.reach(field, &planes, image);
+        if !curved {
+            reach.reach(field, &planes, image);
+        }
     }
 }

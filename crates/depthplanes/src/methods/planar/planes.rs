@@ -14,16 +14,24 @@ pub(super) struct Planes<'a> {
     pub(super) curved: bool,
 }
 
+/// The label of what belongs to a curved region, until all pixels are assigned.
+pub(super) const BENT: u16 = u16::MAX;
+
 impl Planes<'_> {
     #[inline(always)]
     pub(super) fn region(&self, id: u32) -> &Region {
         &self.regions[id as usize]
     }
 
-    /// A region's label in the region image, 0 for those that are not wanted.
+    /// A region's label in the region image while planes are sought: [`BENT`] for all that are curved; while curved ones
+    /// are, 0 for planes.
     #[inline(always)]
     pub(super) fn label(&self, id: u32) -> u16 {
-        if self.region(id).is_curved == self.curved { id as u16 + 1 } else { 0 }
+        match (self.region(id).is_curved, self.curved) {
+            (true, false) => BENT,
+            (false, true) => 0,
+            _ => id as u16 + 1,
+        }
     }
 
     /// Square of the largest distance from a plane at q.
