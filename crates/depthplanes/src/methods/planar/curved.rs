@@ -115,26 +115,40 @@ struct Scene<'a> {
     pyramid: &'a Pyramid,
     all: &'a [Region],
     noise: &'a NoiseModel,
+    is_strip: &'a [bool],
     boxes: &'a [CellBox],
     levels: &'a [u8],
 }
 
 impl Facets {
-    /// Marks the regions that are facets of a curved surface.
-    pub(super) fn mark(&mut self, pyramid: &mut Pyramid, regions: &mut Regions, pairs: &[Pair], noise: &NoiseModel) {
+    /// Finds the columns and rows of every region.
+    pub(super) fn find_boxes(&mut self, grid: &Grid, regions: &Regions) {
+        reserve_to(&mut self.boxes, grid.len());
+        find_boxes(grid, regions.all.len(), &mut self.boxes);
+    }
+
+    /// Marks the regions that are facets of a curved surface. Strips across a crease (`is_strip`) are no facets, and say
+    /// nothing of others: through a strip and a narrow plane beside it there often is a quadratic.
+    pub(super) fn mark(
+        &mut self,
+        pyramid: &mut Pyramid,
+        regions: &mut Regions,
+        pairs: &[Pair],
+        is_strip: &[bool],
+        noise: &NoiseModel,
+    ) {
         let cells = pyramid.grids[0].len();
         reserve_to(&mut self.sums, cells);
         reserve_to(&mut self.bows, cells);
-        reserve_to(&mut self.boxes, cells);
         reserve_to(&mut self.levels, cells);
         reserve_to(&mut self.signs, cells);
         pyramid.hand_up();
         let Facets { sums, bows, boxes, levels, signs } = self;
-        find_boxes(&pyramid.grids[0], regions.all.len(), boxes);
         mark_bowed(pyramid, &regions.all, sums, levels, signs);
+        signs.iter_mut().zip(is_strip).filter(|(_, is_strip)| **is_strip).for_each(|(sign, _)| *sign = None);
         bows.extend(sums.iter().map(Sums::bow));
-        let scene = Scene { pyramid, all: &regions.all, noise, boxes, levels };
-        for pair in pairs.iter().filter(|pair| !scene.are_apart(pair)) {
+        let scene = Scene { pyramid, all: &regions.all, noise, is_strip, boxes, levels };
+        for pair in pairs.iter().filter(|pair| !scene.has_strip(pair) && !scene.are_apart(pair)) {
             let [a, b] = pair.ids;
             let is_larger = boxes[a as usize].area() < boxes[b as usize].area();
             let [small, large] = if is_larger { [a, b] } else { [b, a] };
@@ -150,7 +164,7 @@ impl Facets {
             }
         }
         for id in (0..regions.all.len()).filter(|&id| regions.all[id].sums.n < SMALL) {
-            if signs[id].is_none() && scene.surroundings(id as u32).bends() {
+            if signs[id].is_none() && !is_strip[id] && scene.surroundings(id as u32).bends() {
                 signs[id] = Some(Sign::Surroundings);
             }
         }
@@ -174,6 +188,11 @@ pub(super) fn are_apart(all: &[Region], noise: &NoiseModel, pair: &Pair) -> bool
 }
 
 impl Scene<'_> {
+    /// Whether one of two regions is a strip across a crease.
+    fn has_strip(&self, pair: &Pair) -> bool {
+        pair.ids.iter().any(|&id| self.is_strip[id as usize])
+    }
+
     /// Whether there is a step between two regions where they touch.
     fn are_apart(&self, pair: &Pair) -> bool {
         are_apart(self.all, self.noise, pair)
@@ -190,7 +209,7 @@ impl Scene<'_> {
     /// Marks small regions that continue curved ones; whether there were any.
     fn spread(&self, pairs: &[Pair], signs: &mut [Option<Sign>]) -> bool {
         let mut any = false;
-        for pair in pairs {
+        for pair in pairs.iter().filter(|pair| !self.has_strip(pair)) {
             let [a, b] = pair.ids.map(|id| id as usize);
             for (small, other) in [(a, b), (b, a)] {
                 let may_continue = signs[other].is_some() && signs[small].is_none() && self.all[small].sums.n < LEAST;

@@ -13,7 +13,7 @@ use super::tiles::SIDE;
 use crate::group::reserve_to;
 
 /// A region goes if more than this share of its pixels lies on larger planes beside it.
-const EXPLAINED: f64 = 0.6;
+const EXPLAINED: f64 = 0.7;
 /// How many times as large those are.
 const LARGER: f64 = 2.0;
 /// A strip across a crease lies no further from either plane than this, root mean square, in standard
@@ -72,9 +72,9 @@ impl Explainer {
     }
 }
 
-/// Whether another plane is much larger, and both are planes.
+/// Whether another plane is much larger.
 fn is_larger(own: &Region, other: &Region) -> bool {
-    !own.is_curved && !other.is_curved && other.sums.n > LARGER * own.sums.n
+    other.sums.n > LARGER * own.sums.n
 }
 
 /// Whether a region may be a strip on the border of a larger plane.

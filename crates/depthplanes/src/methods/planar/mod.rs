@@ -288,12 +288,13 @@ impl Runner {
         self.merger.drop_small(&mut self.pyramid.grids[0], &mut self.regions, self.params.least())
     }
 
-    /// Which regions are curved, and which are no surface.
+    /// Which regions are no surface, and which of the others are curved.
     fn judge(&mut self, noise: &NoiseModel, watch: &mut Watch<'_>) {
         let Runner { params, field, pyramid, regions, merger, facets, explainer, .. } = self;
-        facets.mark(pyramid, regions, &merger.pairs, noise);
+        facets.find_boxes(&pyramid.grids[0], regions);
         let planes = Planes { regions: &regions.all, noise, confidence: params.confidence, curved: false };
         explainer.find(field, &pyramid.grids[0], &planes, &merger.pairs, &facets.boxes);
+        facets.mark(pyramid, regions, &merger.pairs, &explainer.is_explained, noise);
         watch(Moment::Judged, self, noise);
         let Runner { pyramid, regions, merger, explainer, .. } = self;
         let mut explained = explainer.is_explained.iter();
