@@ -17,6 +17,7 @@ mod merge;
 mod planes;
 mod quadratic;
 mod tiles;
+mod turns;
 
 use super::records::Records;
 use super::{Job, Method, MethodInfo, Param, ParamKind};
@@ -38,6 +39,7 @@ use level::Level;
 use merge::Merger;
 use planes::Planes;
 use tiles::{LEVELS, Pyramid};
+use turns::Rays;
 
 pub(super) static INFO: MethodInfo = MethodInfo {
     name: "planar",
@@ -226,7 +228,7 @@ impl Runner {
         job.done("tiles");
         self.grow(&noise, job.threads, watch)?;
         job.done("grow");
-        self.judge(&noise, watch);
+        self.judge(&noise, &Rays::of(&job.sensor, map.width(), map.height()), watch);
         job.done("judge");
         self.assign(&noise, false, job.threads);
         watch(Moment::Assigned, self, &noise);
@@ -280,9 +282,9 @@ impl Runner {
     }
 
     /// Which regions are curved, and which are no surface.
-    fn judge(&mut self, noise: &NoiseModel, watch: &mut Watch<'_>) {
+    fn judge(&mut self, noise: &NoiseModel, rays: &Rays, watch: &mut Watch<'_>) {
         let Runner { params, field, pyramid, regions, merger, facets, explainer, .. } = self;
-        facets.mark(pyramid, regions, &merger.pairs, noise);
+        facets.mark(pyramid, regions, &merger.pairs, noise, rays);
         let planes = Planes { regions: &regions.all, noise, confidence: params.confidence, curved: false };
         explainer.find(field, &pyramid.grids[0], &planes, &merger.pairs, &facets.boxes);
         watch(Moment::Judged, self, noise);
