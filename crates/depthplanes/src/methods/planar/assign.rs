@@ -125,7 +125,7 @@ fn label_inside(
     let (region, label) = (planes.region(id), planes.label(id));
     let (first, end) = (columns.start * BLOCK, columns.end * BLOCK);
     let middle = region.at((first + end - 1) as f64 / 2.0, (row * BLOCK) as f64 + HALF);
-    let most = (INSIDE * INSIDE * planes.reach(middle)) as f32;
+    let most = (INSIDE * INSIDE * planes.reach(region, middle)) as f32;
     let a = region.abc[0] as f32;
     for v in 0..BLOCK {
         let part = v * stride + first..v * stride + end;
@@ -300,7 +300,7 @@ impl Block {
     fn local(&self, id: u32, planes: &Planes<'_>) -> Local {
         let (region, [u, v]) = (planes.region(id), self.middle);
         let c = region.at(u, v);
-        let most = planes.reach(c) as f32;
+        let most = planes.reach(region, c) as f32;
         Local { id, a: region.abc[0] as f32, b: region.abc[1] as f32, c: c as f32, most }
     }
 

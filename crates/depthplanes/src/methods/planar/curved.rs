@@ -1,7 +1,7 @@
 //! Stage "curved": facets of curved surfaces are told from planes.
 //!
 //! In: regions of cells and the pairs that touch. Out: which regions are curved. Growth cuts a ball or a column
-//! into facets, each flat to within the noise. Four signs tell them ([`Sign`]). A region's own cell means bow: a
+//! into facets, each flat to within the noise. Five signs tell them ([`Sign`]). A region's own cell means bow: a
 //! quadratic explains more of them than chance would. Across a joint of two facets, or through a small facet and what
 //! is around it, one quadratic runs on smoothly, while the crease of two planes leaves it far off: the best
 //! parabola through a roof misses its ridge by 3/16 of the height. And a small region continues a curved one.
@@ -11,6 +11,7 @@ use super::grow::{Region, Regions};
 use super::merge::Pair;
 use super::quadratic::{Frame, Sums};
 use super::tiles::Pyramid;
+use super::turns::{Border, Rays};
 use crate::group::reserve_to;
 use crate::noise::NoiseModel;
 use std::ops::Range;
@@ -18,7 +19,8 @@ use std::ops::Range;
 /// Largest root mean square, in noise deviations of a pixel, of a plane's bow. Noise alone gives a region of
 /// 240 pixels 0.11 (three terms of a quadratic).
 const BOW: f64 = 0.4;
-/// Pixels from which on a sensor's own distortion counts: it bows a plane the more, the larger its picture.
+/// Pixels from which on a sensor's own distortion counts: it bows a plane the more, the larger its picture. What is so
+/// large is no facet beside others either.
 const LARGE: f64 = 4000.0;
 
 /// [`BOW`] for a region of so many pixels; it grows with the root of the region's side.
@@ -106,6 +108,8 @@ pub(super) enum Sign {
     Joint(u32),
     /// It is small, and one quadratic runs through it and what is around it.
     Surroundings,
+    /// Off its border the surface goes on and turns gently.
+    Turns,
     /// It is small and continues a curved neighbour.
     Continues,
 }
@@ -136,6 +140,7 @@ impl Facets {
         pairs: &[Pair],
         is_strip: &[bool],
         noise: &NoiseModel,
+        rays: &Rays,
     ) {
         let cells = pyramid.grids[0].len();
         reserve_to(&mut self.sums, cells);
@@ -166,6 +171,12 @@ impl Facets {
         for id in (0..regions.all.len()).filter(|&id| regions.all[id].sums.n < SMALL) {
             if signs[id].is_none() && !is_strip[id] && scene.surroundings(id as u32).bends() {
                 signs[id] = Some(Sign::Surroundings);
+            }
+        }
+        for id in (0..regions.all.len()).filter(|&id| regions.all[id].sums.n < LARGE) {
+            let border = Border { grid: &pyramid.grids[0], all: &regions.all, rays, id: id as u32 };
+            if signs[id].is_none() && !is_strip[id] && border.turns(&boxes[id]) {
+                signs[id] = Some(Sign::Turns);
             }
         }
         while scene.spread(pairs, signs) {}

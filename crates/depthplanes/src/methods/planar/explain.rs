@@ -7,7 +7,7 @@ use super::assign::{self, Held};
 use super::curved::Sign;
 use super::grid::{Grid, NONE};
 use super::grow::{LEAST, Region};
-use super::planes::Planes;
+use super::planes::{Planes, of_slope};
 use super::{INFO, Moment, Planar, Runner};
 use crate::camera::{Hessian, Measure, Sensor};
 use crate::detection::Detection;
@@ -267,6 +267,7 @@ impl Seen {
                 format!("curved: it runs on smoothly into a neighbour of {pixels} pixels, on one quadratic")
             }
             Some(Sign::Surroundings) => "curved: one quadratic runs through it and what is around it".to_string(),
+            Some(Sign::Turns) => "curved: off its border the surface goes on and turns gently".to_string(),
             Some(Sign::Continues) => "curved: it continues a curved neighbour".to_string(),
         };
         let finding = Finding::new("judge", "is it flat?", outcome).refusing(sign.is_some());
@@ -301,7 +302,9 @@ impl Seen {
         self.assigned = run.image[self.at[1] * run.field.stride + self.at[0]];
         let held = ids.into_iter().map(|id| {
             let region = &run.regions.all[id as usize];
-            let sigma = noise.variance(region.at(middle[0], middle[1])).sqrt();
+            let [a, b, _] = region.abc;
+            let variance = noise.variance(region.at(middle[0], middle[1])) + f64::from(of_slope(a as f32, b as f32));
+            let sigma = variance.sqrt();
             let off = (self.q - region.at(u, v)).abs() / sigma;
             Against { id, off, is_curved: region.is_curved, pixels: region.sums.n }
         });

@@ -92,7 +92,7 @@ fn share_on(field: &Field, grid: &Grid, planes: &Planes<'_>, id: u32, others: &[
             if grid.region[at] != id {
                 continue;
             }
-            let most = planes.reach(grid.q(at));
+            let most = planes.reach(planes.region(id), grid.q(at));
             for v in row * SIDE..(row + 1) * SIDE {
                 for u in column * SIDE..(column + 1) * SIDE {
                     let q = f64::from(field.q[v * field.stride + u]);

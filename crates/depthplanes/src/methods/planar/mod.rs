@@ -21,6 +21,7 @@ mod reach;
 #[cfg(test)]
 mod tests;
 mod tiles;
+mod turns;
 
 use super::records::Records;
 use super::{Job, Method, MethodInfo, Param, ParamKind};
@@ -44,6 +45,7 @@ use merge::Merger;
 use planes::Planes;
 use reach::Reach;
 use tiles::{LEVELS, Pyramid};
+use turns::Rays;
 
 pub(super) static INFO: MethodInfo = MethodInfo {
     name: "planar",
@@ -234,7 +236,7 @@ impl Runner {
         job.done("tiles");
         self.grow(&noise, job.threads, watch)?;
         job.done("grow");
-        self.judge(&noise, watch);
+        self.judge(&noise, &Rays::of(&job.sensor, map.width(), map.height()), watch);
         job.done("judge");
         self.assign(&noise, false, job.threads);
         watch(Moment::Assigned, self, &noise);
@@ -289,12 +291,12 @@ impl Runner {
     }
 
     /// Which regions are no surface, and which of the others are curved.
-    fn judge(&mut self, noise: &NoiseModel, watch: &mut Watch<'_>) {
+    fn judge(&mut self, noise: &NoiseModel, rays: &Rays, watch: &mut Watch<'_>) {
         let Runner { params, field, pyramid, regions, merger, facets, explainer, .. } = self;
         facets.find_boxes(&pyramid.grids[0], regions);
         let planes = Planes { regions: &regions.all, noise, confidence: params.confidence, curved: false };
         explainer.find(field, &pyramid.grids[0], &planes, &merger.pairs, &facets.boxes);
-        facets.mark(pyramid, regions, &merger.pairs, &explainer.is_explained, noise);
+        facets.mark(pyramid, regions, &merger.pairs, &explainer.is_explained, noise, rays);
         watch(Moment::Judged, self, noise);
         let Runner { pyramid, regions, merger, explainer, .. } = self;
         let mut explained = explainer.is_explained.iter();

@@ -76,9 +76,10 @@ impl Reach {
         for [x, y] in around.neighbours(place) {
             let label = image[y * field.stride + x];
             if label > 0 && label != BENT && label != image[at] {
-                let on_plane = planes.region(u32::from(label) - 1).at(u, v);
+                let region = planes.region(u32::from(label) - 1);
+                let on_plane = region.at(u, v);
                 let off = (q - on_plane).powi(2);
-                if off < best && off <= planes.reach(on_plane) {
+                if off < best && off <= planes.reach(region, on_plane) {
                     best = off;
                     image[at] = label;
                 }

@@ -6,6 +6,7 @@
 
 use super::field::{Field, ROWS, fill_row};
 use super::grid::{Grid, GridRows, NONE, Sums, drift, limit};
+use super::planes::of_slope;
 use crate::group::vectorised;
 use crate::map::{DepthView, Pixel};
 use crate::noise::{NoiseModel, Space};
@@ -123,6 +124,9 @@ impl Cells<'_> {
             let (finer, coarser) = self.grids.split_at_mut(level);
             let grid = &mut coarser[0];
             noise.variances(grid.sums.c, grid.variance);
+            for ((variance, &a), &b) in grid.variance.iter_mut().zip(&*grid.sums.a).zip(&*grid.sums.b) {
+                *variance += of_slope(a, b);
+            }
             grid.hold_against_noise(finer.last(), confidence);
         }
     }
