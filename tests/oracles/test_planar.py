@@ -22,7 +22,7 @@ def score(program, folder, source, truth, reading, lowest=1):
     return pair["segcomp"] | {"f_score": pair["evops"]["f_score"], "f": pair["synpeb"]["f"]}
 
 
-@pytest.mark.parametrize("setting, least", [(["--preset", "structured-light"], 15.0), ([], 15.0)])
+@pytest.mark.parametrize("setting, least", [(["--preset", "structured-light"], 15.8), ([], 15.6)])
 def test_segcomp_abw(program, data, tell, tmp_path, setting, least):
     found = []
     for depth in rows(data, "gt_segcomp_abw/abw.test."):
@@ -56,7 +56,7 @@ def test_synpeb(program, data, tell, tmp_path):
     share = sum(one["f"] for one in found) / len(found)
     tell_mean(tell, f"SynPEB, {len(found)} scans, planar, f {share:.2f}", found)
     assert len(found) == 2
-    assert share >= 0.55
+    assert share >= 0.6
 
 
 def mean(found, name):

@@ -16,7 +16,8 @@ const ANGLE: f64 = 0.375;
 /// Standard deviations of a pixel by which a tile lies off the plane where the surface does turn: what rounding does, its
 /// pixels may share.
 const DEVIATIONS: f64 = 3.0;
-/// Share of the border beyond which it turns gently: a facet on the rim of a ball has a step on its other side.
+/// Share of the border beyond which it turns gently: a facet on the rim of a ball has a step on its other side. The ridge of
+/// a roof is as much of the border of a half two tiles wide, one in forty of which is taken for a facet.
 const SHARE: f64 = 0.4;
 /// Fewest places along a border that say something: those of 2 x 2 tiles.
 const FEW: f64 = 8.0;
@@ -89,7 +90,8 @@ impl Border<'_> {
                 let mut look = |is_there: bool, next: usize, far: [usize; 2], step: [f64; 2]| {
                     if is_there && grid.region[next] != self.id {
                         places += 1.0;
-                        gentle += f64::from(u8::from(self.turns_to(normal, [column, row], far, step)));
+                        let goes_on = grid.pixels(next) >= HALF && self.turns_to(normal, [column, row], far, step);
+                        gentle += f64::from(u8::from(goes_on));
                     }
                 };
                 // The next tile may lie on both sides of an edge, the one behind it is clear of it.
