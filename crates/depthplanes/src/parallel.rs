@@ -22,7 +22,7 @@ pub(crate) fn in_parts<W: Rows, A: Send>(
     work: impl Fn(W) -> A + Sync,
     unite: impl Fn(A, A) -> A + Sync,
 ) -> A {
-    let parts = if threads > 1 { threads * PARTS } else { 1 };
+    let parts = if cfg!(feature = "parallel") && threads > 1 { threads * PARTS } else { 1 };
     split(parts, whole, &work, &unite)
 }
 
@@ -32,17 +32,25 @@ fn split<W: Rows, A: Send>(
     work: &(impl Fn(W) -> A + Sync),
     unite: &(impl Fn(A, A) -> A + Sync),
 ) -> A {
-    #[cfg(feature = "parallel")]
-    if parts.min(whole.rows()) > 1 {
-        let half = parts / 2;
-        let rows = (whole.rows() * half / parts).max(1);
-        let (first, second) = whole.cut(rows);
-        let (a, b) = rayon::join(|| split(half, first, work, unite), || split(parts - half, second, work, unite));
-        return unite(a, b);
+    if parts.min(whole.rows()) <= 1 {
+        return work(whole);
     }
-    #[cfg(not(feature = "parallel"))]
-    let _ = (parts, unite);
-    work(whole)
+    let half = parts / 2;
+    let rows = (whole.rows() * half / parts).max(1);
+    let (first, second) = whole.cut(rows);
+    let (a, b) = both(|| split(half, first, work, unite), || split(parts - half, second, work, unite));
+    unite(a, b)
+}
+
+/// Does both, side by side if there is a thread for it.
+#[cfg(feature = "parallel")]
+fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+    rayon::join(a, b)
+}
+
+#[cfg(not(feature = "parallel"))]
+fn both<A, B>(a: impl FnOnce() -> A, b: impl FnOnce() -> B) -> (A, B) {
+    (a(), b())
 }
 
 impl<T: Send> Rows for &mut [T] {
