@@ -16,8 +16,7 @@ const ANGLE: f64 = 0.375;
 /// Standard deviations of a pixel by which a tile lies off the plane where the surface does turn: what rounding does, its
 /// pixels may share.
 const DEVIATIONS: f64 = 3.0;
-/// Share of the border beyond which it turns gently: a facet on the rim of a ball has a step on its other side. The ridge of
-/// a roof is as much of the border of a half two tiles wide, one in forty of which is taken for a facet.
+/// Share of the border beyond which it turns gently: a facet on the rim of a ball has a step on its other side.
 const SHARE: f64 = 0.4;
 /// Fewest places along a border that say something: those of 2 x 2 tiles.
 const FEW: f64 = 8.0;
@@ -27,6 +26,8 @@ const LARGER: f64 = 4.0;
 const USUAL: f64 = 240.0;
 /// Valid pixels of a tile whose mean says something.
 const HALF: f32 = 8.0;
+/// Valid pixels of a tile over which a surface goes on: a gap takes a column of four from one tile, or from two.
+const WHOLE: f32 = 13.0;
 
 /// Rays of the pixels, and inverse depth up to a factor, which angles do not depend on.
 #[derive(Clone, Copy, Debug)]
@@ -90,7 +91,7 @@ impl Border<'_> {
                 let mut look = |is_there: bool, next: usize, far: [usize; 2], step: [f64; 2]| {
                     if is_there && grid.region[next] != self.id {
                         places += 1.0;
-                        let goes_on = grid.pixels(next) >= HALF && self.turns_to(normal, [column, row], far, step);
+                        let goes_on = grid.pixels(next) >= WHOLE && self.turns_to(normal, [column, row], far, step);
                         gentle += f64::from(u8::from(goes_on));
                     }
                 };
@@ -136,12 +137,11 @@ impl Border<'_> {
         let edge = [0, 1].map(|i| own[i] + 0.5 * side * step[i]);
         let from = rays.point(edge, region.at(edge[0], edge[1]));
         let (to, straight) = (rays.point([u, v], q), rays.point([u, v], on_plane));
-        let way = |point: [f64; 3]| {
-            let way = [0, 1, 2].map(|i| point[i] - from[i]);
-            dot(way, way)
-        };
-        // What lies far behind an edge is many times as far off as the plane itself is there, or the other way round.
-        let apart = dot(normal, to) - 1.0;
-        apart * apart <= ANGLE * ANGLE * dot(normal, normal) * way(to).min(way(straight))
+        let [to, straight] = [to, straight].map(|point| [0, 1, 2].map(|i| point[i] - from[i]));
+        // What lies far behind an edge is many times as far off as the plane itself is there, or the other way round; what
+        // folds back lies on the edge's other side.
+        let apart = dot(normal, to);
+        let way = dot(to, to).min(dot(straight, straight));
+        dot(to, straight) > 0.0 && apart * apart <= ANGLE * ANGLE * dot(normal, normal) * way
     }
 }
