@@ -91,6 +91,7 @@ pub struct Kernel {
     pub(crate) u8: Compiled<u8>,
     pub(crate) u16: Compiled<u16>,
     pub(crate) f32: Compiled<f32>,
+    masks: unsafe fn(&[u16], &[u16], &LinkRule<u16>, RowMasks<'_>),
     paint: unsafe fn(&Strip, &[u16], &mut [u16]),
 }
 
@@ -116,6 +117,10 @@ macro_rules! kernel {
                 strip::stitch::<$isa, T>(map, rule, upper, lower, parent);
             }
             #[target_feature(enable = $features)]
+            fn masks(row: &[u16], up: &[u16], rule: &LinkRule<u16>, out: strip::RowMasks<'_>) {
+                <$isa as super::Isa>::masks_u16(row, up, rule, out);
+            }
+            #[target_feature(enable = $features)]
             fn paint(rows: &strip::Strip, label_of_provisional: &[u16], image: &mut [u16]) {
                 super::paint_strip::<$isa>(rows, label_of_provisional, image);
             }
@@ -125,6 +130,7 @@ macro_rules! kernel {
                 u8: super::Compiled { scan: scan::<u8>, stitch: stitch::<u8> },
                 u16: super::Compiled { scan: scan::<u16>, stitch: stitch::<u16> },
                 f32: super::Compiled { scan: scan::<f32>, stitch: stitch::<f32> },
+                masks,
                 paint,
             }
         };
@@ -216,6 +222,12 @@ impl Kernel {
     ) {
         // SAFETY: as in `scan`.
         unsafe { (T::compiled(self).stitch)(map, rule, upper, lower, parent) }
+    }
+
+    /// Masks of a row of numbers, and of how they are like those above.
+    pub(crate) fn masks(&self, row: &[u16], up: &[u16], rule: &LinkRule<u16>, out: RowMasks<'_>) {
+        // SAFETY: as in `scan`.
+        unsafe { (self.masks)(row, up, rule, out) }
     }
 
     pub(super) fn paint(&self, strip: &Strip, label_of_provisional: &[u16], image: &mut [u16]) {

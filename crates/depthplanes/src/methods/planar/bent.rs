@@ -6,6 +6,7 @@
 
 use super::Runner;
 use super::curved::are_apart;
+use super::planes::of_image;
 use crate::detection::{Curved, CurvedRegion};
 use crate::error::Result;
 use crate::group::{LinkRule, reserve_to};
@@ -49,8 +50,7 @@ impl Runner {
         self.assign(noise, true, job.threads);
         self.join_facets(noise);
         let Runner { params, field, image, grouper, selection, describer, .. } = self;
-        let ids =
-            DepthView::with_stride(&image[..field.stride * map.height()], map.width(), map.height(), field.stride)?;
+        let ids = of_image(image, field)?;
         let groups = grouper.group(&ids, &LinkRule::new(ids.validity(), 0.0)?, job.threads);
         selection.select(groups, params.min)?;
         describer.tally(map, selection.runs(groups), 0, &job.sensor, job.threads);

@@ -7,7 +7,7 @@ use super::assign::{self, Held};
 use super::curved::Sign;
 use super::grid::{Grid, NONE};
 use super::grow::{LEAST, Region};
-use super::planes::{Planes, of_slope};
+use super::planes::{BENT, Planes, of_slope};
 use super::{INFO, Moment, Planar, Runner};
 use crate::camera::{Hessian, Measure, Sensor};
 use crate::detection::Detection;
@@ -299,7 +299,8 @@ impl Seen {
         let Held { ids, middle, factor } = assign::held_against([tiles, blocks], self.at);
         let [u, v] = self.at.map(|place| place as f64);
         self.most = factor * run.params.confidence;
-        self.assigned = run.image[self.at[1] * run.field.stride + self.at[0]];
+        let label = run.image[self.at[1] * run.field.stride + self.at[0]];
+        self.assigned = if label == BENT { 0 } else { label };
         let held = ids.into_iter().map(|id| {
             let region = &run.regions.all[id as usize];
             let [a, b, _] = region.abc;

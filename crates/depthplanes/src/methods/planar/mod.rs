@@ -18,6 +18,7 @@ mod merge;
 mod planes;
 mod quadratic;
 mod reach;
+mod seams;
 #[cfg(test)]
 mod tests;
 mod tiles;
@@ -44,6 +45,7 @@ use level::Level;
 use merge::Merger;
 use planes::Planes;
 use reach::Reach;
+use seams::Seams;
 use tiles::{LEVELS, Pyramid};
 use turns::Rays;
 
@@ -183,6 +185,7 @@ struct Runner {
     facets: Facets,
     explainer: Explainer,
     image: Vec<u16>,
+    seams: Seams,
     reach: Reach,
     contacts: Contacts,
     bent: Bent,
@@ -239,12 +242,12 @@ impl Runner {
         self.judge(&noise, &Rays::of(&job.sensor, map.width(), map.height()), watch);
         job.done("judge");
         self.assign(&noise, false, job.threads);
+        self.reach(&noise, job.threads);
         watch(Moment::Assigned, self, &noise);
-        self.contacts.join(&self.field, &mut self.regions.all, &mut self.image);
+        self.contacts.join(&mut self.regions.all, &mut self.image);
         job.done("assign");
         let Runner { params, field, image, grouper, selection, describer, .. } = self;
-        let ids =
-            DepthView::with_stride(&image[..field.stride * map.height()], map.width(), map.height(), field.stride)?;
+        let ids = planes::of_image(image, field)?;
         let groups = grouper.group(&ids, &LinkRule::new(ids.validity(), 0.0)?, job.threads);
         job.done("group");
         selection.select(groups, params.min)?;
@@ -304,16 +307,23 @@ impl Runner {
         merger.drop(&mut pyramid.grids[0], regions, is_explained);
     }
 
-    /// The region of every pixel: its plane, or its curved region.
+    /// The region of every pixel: its plane, or its curved region; while planes are sought, all curved ones as
+    /// [`planes::BENT`].
     fn assign(&mut self, noise: &NoiseModel, curved: bool, threads: usize) {
-        let Runner { params, field, pyramid, regions, image, reach, .. } = self;
+        let Runner { params, field, pyramid, regions, image, .. } = self;
         image.resize(field.q.len(), 0);
         pyramid.hand_up();
         let [tiles, blocks, ..] = &pyramid.grids;
         let planes = Planes { regions: &regions.all, noise, confidence: params.confidence, curved };
         assign::assign(field, [tiles, blocks], &planes, threads, image);
-        if !curved {
-            reach.reach(field, &planes, image);
-        }
+    }
+
+    /// Lets planes reach on, and lists those that touch.
+    fn reach(&mut self, noise: &NoiseModel, threads: usize) {
+        let Runner { params, field, regions, image, seams, reach, contacts, .. } = self;
+        let planes = Planes { regions: &regions.all, noise, confidence: params.confidence, curved: false };
+        seams.find(image, field.stride, threads);
+        contacts.list(seams, image);
+        reach.reach(field, &planes, seams, image, contacts);
     }
 }

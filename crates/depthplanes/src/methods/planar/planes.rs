@@ -1,6 +1,9 @@
 //! What pixels are held against: planes, and how far from them a sensor's noise lets them lie.
 
+use super::field::Field;
 use super::grow::Region;
+use crate::error::Result;
+use crate::map::DepthView;
 use crate::noise::NoiseModel;
 
 /// How well the ray of a pixel is known, pixels, one standard deviation: what a surface's slope makes of it comes on top of
@@ -24,7 +27,7 @@ pub(super) struct Planes<'a> {
     pub(super) curved: bool,
 }
 
-/// The label of what belongs to a curved region, until all pixels are assigned.
+/// The label of what belongs to a curved region while planes are sought.
 pub(super) const BENT: u16 = u16::MAX;
 
 impl Planes<'_> {
@@ -50,4 +53,10 @@ impl Planes<'_> {
         let [a, b, _] = region.abc;
         self.confidence * self.confidence * (self.noise.variance(q) + f64::from(of_slope(a as f32, b as f32)))
     }
+}
+
+/// A region image as a map of numbers, [`BENT`] and 0 missing.
+pub(super) fn of_image<'a>(image: &'a [u16], field: &Field) -> Result<DepthView<'a, u16>> {
+    let Field { width, height, stride, .. } = *field;
+    DepthView::with_stride(&image[..stride * height], width, height, stride)?.valid_range(1, BENT - 1)
 }

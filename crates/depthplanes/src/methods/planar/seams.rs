@@ -1,0 +1,115 @@
+//! Stage "assign", second part: where the region image changes.
+//!
+//! In: the region image. Out: the pixels without a region beside one that has one, and the neighbours that have different
+//! ones. Most pixels are neither, so they are found as bits, 64 to a word: column u of a row is bit u % 64 of its word
+//! u / 64. What follows looks at these pixels alone.
+
+use crate::group::{Kernel, LinkRule, RowMasks};
+use crate::map::Validity;
+use crate::parallel::{Rows, in_parts};
+
+/// Pixels of a word.
+const WORD: usize = u64::BITS as usize;
+
+/// Masks of a region image; reuses its memory.
+#[derive(Debug, Default)]
+pub(super) struct Seams {
+    /// Words of a row.
+    words: usize,
+    /// Pixels with a region; a row without any stands before the first and after the last.
+    labelled: Vec<u64>,
+    /// Pixels with the label of their left neighbour, and of their upper one.
+    like_left: Vec<u64>,
+    like_up: Vec<u64>,
+}
+
+impl Seams {
+    /// Looks at an image of `stride` columns, a multiple of [`WORD`], on as many threads.
+    pub(super) fn find(&mut self, image: &[u16], stride: usize, threads: usize) {
+        let (words, count) = (stride / WORD, image.len() / WORD);
+        let Seams { labelled, like_left, like_up, .. } = self;
+        labelled.clear();
+        labelled.resize(count + 2 * words, 0);
+        like_left.resize(count, 0);
+        like_up.resize(count, 0);
+        let labelled = &mut labelled[words..][..count];
+        let rule = LinkRule::new(Validity::default(), 0.0).expect("theta is 0");
+        let find = |part: Part<'_>| part.find(image, stride, &rule);
+        in_parts(threads, Part { first: 0, words, labelled, like_left, like_up }, find, |(), ()| ());
+        self.words = words;
+    }
+
+    /// (u, v) of the pixels without a region that have a neighbour with one, row by row.
+    pub(super) fn open(&self) -> impl Iterator<Item = [usize; 2]> {
+        let (words, all) = (self.words, &self.labelled);
+        (words..all.len() - words).flat_map(move |at| {
+            let (first, last) = (at % words == 0, (at + 1) % words == 0);
+            let from_left = if first { 0 } else { all[at - 1] >> (WORD - 1) };
+            let from_right = if last { 0 } else { all[at + 1] << (WORD - 1) };
+            let beside = all[at] << 1 | from_left | all[at] >> 1 | from_right | all[at - words] | all[at + words];
+            bits(!all[at] & beside).map(move |bit| [at % words * WORD + bit, at / words - 1])
+        })
+    }
+
+    /// Calls `visit` with the labels of each two neighbours that have different ones.
+    pub(super) fn each(&self, image: &[u16], mut visit: impl FnMut(u16, u16)) {
+        let words = self.words;
+        let labelled = &self.labelled;
+        for (at, (like_left, like_up)) in self.like_left.iter().zip(&self.like_up).enumerate() {
+            let [here, above] = [labelled[at + words], labelled[at]];
+            let from_left = if at % words == 0 { 0 } else { labelled[at + words - 1] >> (WORD - 1) };
+            let mut visit_all = |mask: u64, off: usize| {
+                bits(mask).map(|bit| at * WORD + bit).for_each(|pixel| visit(image[pixel], image[pixel - off]));
+            };
+            visit_all(here & (here << 1 | from_left) & !like_left, 1);
+            visit_all(here & above & !like_up, words * WORD);
+        }
+    }
+}
+
+/// The masks of some rows, to be written.
+struct Part<'a> {
+    /// The image's row in the first.
+    first: usize,
+    words: usize,
+    labelled: &'a mut [u64],
+    like_left: &'a mut [u64],
+    like_up: &'a mut [u64],
+}
+
+impl Rows for Part<'_> {
+    fn rows(&self) -> usize {
+        self.labelled.len() / self.words
+    }
+
+    fn cut(self, rows: usize) -> (Self, Self) {
+        let Part { first, words, labelled, like_left, like_up } = self;
+        let [a, b, c] = [labelled, like_left, like_up].map(|masks| masks.split_at_mut(rows * words));
+        (
+            Part { first, words, labelled: a.0, like_left: b.0, like_up: c.0 },
+            Part { first: first + rows, words, labelled: a.1, like_left: b.1, like_up: c.1 },
+        )
+    }
+}
+
+impl Part<'_> {
+    fn find(self, image: &[u16], stride: usize, rule: &LinkRule<u16>) {
+        let Part { first, words, labelled, like_left, like_up } = self;
+        let kernel = Kernel::best();
+        let row = |v: usize| &image[v * stride..][..stride];
+        let likes = like_left.chunks_exact_mut(words).zip(like_up.chunks_exact_mut(words));
+        for (v, (valid, (close_left, close_up))) in (first..).zip(labelled.chunks_exact_mut(words).zip(likes)) {
+            kernel.masks(row(v), row(v.saturating_sub(1)), rule, RowMasks { valid, close_left, close_up });
+        }
+    }
+}
+
+/// The places of a word's bits.
+#[inline(always)]
+fn bits(mut word: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let bit = word.trailing_zeros() as usize;
+        word &= word.wrapping_sub(1);
+        (bit < WORD).then_some(bit)
+    })
+}
