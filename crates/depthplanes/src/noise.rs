@@ -144,6 +144,7 @@ impl NoiseModel {
             Space::InverseDepth { metres } => (0.0, metres),
             Space::Value => (1.0, 0.0),
         };
+        let per_slope = 1.0 / slope.abs();
         let each = q.iter().zip(variances);
         let with = |q: f64, sensor: f64| {
             let rounding = ROUNDING * self.step * (unit + unit_by_square * q * q);
@@ -154,7 +155,7 @@ impl NoiseModel {
             SensorNoise::Value { sigma } => each.for_each(|(&q, variance)| *variance = with(q.into(), sigma)),
             SensorNoise::Depth { base, growth } => each.for_each(|(&q, variance)| {
                 let p = (slope * f64::from(q) + offset).max(0.0);
-                *variance = with(q.into(), (growth + base * p * p) / slope.abs());
+                *variance = with(q.into(), (growth + base * p * p) * per_slope);
             }),
             SensorNoise::Table(_) => each.for_each(|(&q, variance)| *variance = self.variance(q.into()) as f32),
         }

@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::fit::Moments;
 use crate::map::{AnyView, DepthView, Pixel};
 use crate::with_view;
+use std::cmp::Ordering;
 
 /// Stretches of q, each with as many blocks.
 const BINS: usize = 8;
@@ -67,17 +68,21 @@ impl Blocks {
     /// The noise that explains the scatter, and the q that a fortieth of the blocks lie below and above; 0 without a
     /// block.
     pub(crate) fn noise(&mut self, space: Space) -> (SensorNoise, [f64; 2]) {
-        let blocks = &mut self.all;
-        blocks.sort_unstable_by(|a, b| a.q.total_cmp(&b.q).then(a.scatter.total_cmp(&b.scatter)));
+        let mut blocks = &mut self.all[..];
         let few = blocks.len() / 40;
-        let range = [blocks.get(few), blocks.iter().nth_back(few)].map(|block| block.map_or(0.0, |block| block.q));
+        let range =
+            [Some(few), blocks.len().checked_sub(few + 1)].map(|at| nth(blocks, at, by_q).map_or(0.0, |block| block.q));
         let size = blocks.len().div_ceil(BINS).max(1);
         let mut points = [(0.0, 0.0, 0.0); BINS];
         let mut count = 0;
-        for (bin, point) in blocks.chunks_mut(size).zip(&mut points) {
-            let q = bin[bin.len() / 2].q;
-            bin.sort_unstable_by(|a, b| a.scatter.total_cmp(&b.scatter));
-            let Block { scatter, rounding, .. } = bin[(bin.len() as f64 * FLAT) as usize];
+        for point in &mut points {
+            // The lowest of those that are left.
+            nth(blocks, Some(size), by_q);
+            let (bin, rest) = blocks.split_at_mut(size.min(blocks.len()));
+            let Some(q) = nth(bin, Some(bin.len() / 2), by_q).map(|block| block.q) else { break };
+            blocks = rest;
+            let flat = nth(bin, Some((bin.len() as f64 * FLAT) as usize), |a, b| a.scatter.total_cmp(&b.scatter));
+            let Block { scatter, rounding, .. } = flat.expect("a share below 1 of some");
             *point = (q, (scatter - rounding).max(0.0).sqrt(), scatter.max(1e-12).recip());
             count += 1;
         }
@@ -88,6 +93,16 @@ impl Blocks {
         };
         (noise, range)
     }
+}
+
+/// The block that sorting would bring to a place, if there is one; those before it then go before it, those behind behind it.
+fn nth(blocks: &mut [Block], at: Option<usize>, order: impl Fn(&Block, &Block) -> Ordering) -> Option<Block> {
+    let at = at.filter(|&at| at < blocks.len())?;
+    Some(*blocks.select_nth_unstable_by(at, order).1)
+}
+
+fn by_q(a: &Block, b: &Block) -> Ordering {
+    a.q.total_cmp(&b.q).then(a.scatter.total_cmp(&b.scatter))
 }
 
 /// Least squares of `sigma = constant + square q^2` over points (q, sigma, weight), neither below 0.

@@ -3,11 +3,12 @@
 //! In: a map. Out: the distance of neighbouring values that occur, map units. Scaled maps leave out many values, and
 //! coarse sensors leave out more the further they look.
 
+use crate::group::vectorised;
 use crate::map::{DepthView, Pixel};
 
 /// Values that are looked at, about.
 const SAMPLE: usize = 1 << 15;
-/// Values that are passed over at a time where none of them occurs.
+/// Values that are looked at together.
 const GROUP: usize = 32;
 /// Longest step that is told from longer ones, map units.
 const FAR: usize = 1023;
@@ -28,7 +29,10 @@ impl Steps {
         if !T::IS_INTEGER {
             return 0.0;
         }
-        self.look(map);
+        vectorised(
+            #[inline(always)]
+            || self.look(map),
+        );
         let steps = self.steps();
         let count: u32 = steps.iter().sum();
         if count < LEAST {
@@ -43,17 +47,19 @@ impl Steps {
     }
 
     /// Marks the values that occur.
+    #[inline(always)]
     fn look<T: Pixel>(&mut self, map: &DepthView<'_, T>) {
         let seen = &mut self.seen;
         seen.clear();
         seen.resize(1 << (8 * size_of::<T>()), false);
         let validity = map.validity();
-        for row in map.rows().step_by(map.area().div_ceil(SAMPLE)) {
-            for &value in row {
+        let mut places = [0; GROUP];
+        for values in map.rows().step_by(map.area().div_ceil(SAMPLE)).flat_map(|row| row.chunks(GROUP)) {
+            for (place, &value) in places.iter_mut().zip(values) {
                 // Without a branch: 0 stands for the values that do not count.
-                let value = if validity.holds(value) { value.to_f32() as u32 } else { 0 };
-                seen[value as usize] = true;
+                *place = if validity.holds(value) { value.to_f32() as u32 } else { 0 };
             }
+            places[..values.len()].iter().for_each(|&place| seen[place as usize] = true);
         }
         seen[0] = false;
     }

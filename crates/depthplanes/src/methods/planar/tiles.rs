@@ -210,6 +210,13 @@ fn sum_cells(parts: &GridRows<'_>, row: usize, side: usize, grid: &mut GridRows<
 /// The sums of tiles that lie side by side.
 #[inline(always)]
 fn tiles(rows: [&[f32; LANES * SIDE]; SIDE]) -> Sums<Lanes> {
+    // Where all pixels are valid, half of the sums are known.
+    let is_whole = rows.iter().fold(true, |all, row| row.iter().fold(all, |all, q| all & q.is_finite()));
+    if is_whole { tiles_of::<true>(rows) } else { tiles_of::<false>(rows) }
+}
+
+#[inline(always)]
+fn tiles_of<const WHOLE: bool>(rows: [&[f32; LANES * SIDE]; SIDE]) -> Sums<Lanes> {
     let mut out = no_sums();
     for t in 0..LANES {
         let mut q = [[0.0; SIDE]; SIDE];
@@ -218,7 +225,7 @@ fn tiles(rows: [&[f32; LANES * SIDE]; SIDE]) -> Sums<Lanes> {
         for row in 0..SIDE {
             for column in 0..SIDE {
                 let value = rows[row][t * SIDE + column];
-                let holds = value.is_finite();
+                let holds = WHOLE || value.is_finite();
                 w[row][column] = if holds { 1.0 } else { 0.0 };
                 q[row][column] = if holds { value } else { 0.0 };
                 let (w, du, dv) = (w[row][column], OFF[column], OFF[row]);
@@ -359,10 +366,11 @@ impl GridRows<'_> {
     #[inline(always)]
     fn hold_against_noise(&mut self, parts: Option<&GridRows<'_>>, confidence: f32) {
         let GridRows { sums: Sums { n, squares, strain, .. }, variance, roughness, columns, .. } = self;
-        for at in 0..n.len() {
-            let free = larger(n[at] - 3.0, 1.0);
-            let own = squares[at] * n[at] / (free * limit(n[at], confidence));
-            roughness[at] = larger(own, strain[at]) / variance[at];
+        let numbers = n.iter().zip(&**squares).zip(&**strain).zip(&**variance);
+        for ((((&n, &squares), &strain), &variance), roughness) in numbers.zip(&mut **roughness) {
+            let free = larger(n - 3.0, 1.0);
+            let own = squares * n / (free * limit(n, confidence));
+            *roughness = larger(own, strain) / variance;
         }
         if let Some(parts) = parts {
             for (row, roughness) in roughness.chunks_exact_mut(*columns).enumerate() {
