@@ -22,6 +22,7 @@ pub mod metrics;
 pub mod noise;
 pub mod outline;
 mod parallel;
+mod random;
 pub mod scene;
 pub mod select;
 

@@ -2,7 +2,11 @@
 //!
 //! A row of [`METHODS`] gives a method its flag, its keyword, its help and its contract tests.
 
+mod affine;
+mod cloud;
+mod finish;
 mod ngaf;
+mod normals;
 mod planar;
 mod records;
 mod tries;
@@ -18,7 +22,7 @@ pub use ngaf::Ngaf;
 pub use planar::Planar;
 
 /// All methods. The first is the default.
-pub static METHODS: &[&MethodInfo] = &[&planar::INFO, &ngaf::INFO];
+pub static METHODS: &[&MethodInfo] = &[&planar::INFO, &ngaf::INFO, &normals::INFO];
 
 /// One row of [`METHODS`].
 #[derive(Debug)]

@@ -4,11 +4,12 @@
 //! fixed scenes move their furniture a little, made-up ones are drawn anew.
 
 use super::clutter;
-use super::exact::{Random, unit};
+use super::exact::unit;
 use super::pose::Pose;
 use super::room;
 use super::surfaces::{Place, Scene};
 use crate::error::{Error, Result};
+use crate::random::Random;
 
 /// A scene and the place of the camera in it.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,9 +1,9 @@
 //! Scenes drawn from a seed: where boxes, balls, columns and ramps happen to stand.
 
 use super::catalogue::Staged;
-use super::exact::Random;
 use super::pose::Pose;
 use super::surfaces::{Place, Scene};
+use crate::random::Random;
 
 /// A piece of floor with the circles already taken.
 struct Floor {

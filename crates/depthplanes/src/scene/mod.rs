@@ -39,8 +39,8 @@ mod spec;
 mod surfaces;
 mod truth;
 
+pub use crate::random::Random;
 pub use catalogue::{SCENES, SceneInfo, Staged, find};
-pub use exact::Random;
 pub use pose::{Camera, Pose};
 pub use sensors::{SENSORS, SensorInfo, SensorModel};
 pub use spec::{MAX_FRAME_PIXELS, Spec};

@@ -3,9 +3,9 @@
 //! Lengths are metres of ordinary furniture. The seed moves and turns what could be moved.
 
 use super::catalogue::Staged;
-use super::exact::Random;
 use super::pose::Pose;
 use super::surfaces::{Place, Scene};
+use crate::random::Random;
 
 /// A rectangle in a wall: along the wall from, to; above the floor from, to.
 type Opening = [f64; 4];

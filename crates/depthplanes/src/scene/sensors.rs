@@ -8,11 +8,11 @@ mod tof;
 
 use super::ScenePixels;
 use super::cast::{Cast, Caster};
-use super::exact::Random;
 use super::pose::Camera;
 use super::surfaces::Scene;
 use crate::camera::Measure;
 use crate::error::{Error, Result};
+use crate::random::Random;
 
 /// A depth camera's behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,6 +12,7 @@ use crate::error::Result;
 use crate::group::{LinkRule, reserve_to};
 use crate::map::{DepthView, Pixel};
 use crate::methods::Job;
+use crate::methods::finish::Finisher;
 use crate::noise::NoiseModel;
 
 /// Memory of this stage.
@@ -49,7 +50,8 @@ impl Runner {
     ) -> Result<Curved> {
         self.assign(noise, true, job.threads);
         self.join_facets(noise);
-        let Runner { params, field, image, grouper, selection, describer, .. } = self;
+        let Runner { params, field, image, finisher, .. } = self;
+        let Finisher { grouper, selection, describer } = finisher;
         let ids = of_image(image, field)?;
         let groups = grouper.group(&ids, &LinkRule::new(ids.validity(), 0.0)?, job.threads);
         selection.select(groups, params.min)?;

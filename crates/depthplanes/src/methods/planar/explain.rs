@@ -340,7 +340,7 @@ impl Seen {
         if self.assigned == 0 {
             return;
         }
-        let groups = run.grouper.groups();
+        let groups = run.finisher.grouper.groups();
         let [u, v] = self.at.map(|place| place as u32);
         groups.each_run(|run| {
             if run.v == v && (run.u_first..=run.u_last).contains(&u) {

@@ -24,16 +24,13 @@ mod tests;
 mod tiles;
 mod turns;
 
-use super::records::Records;
+use super::finish::{Finisher, MIN, STAGES, Wanted};
 use super::{Job, Method, MethodInfo, Param, ParamKind};
-use crate::describe::{Describer, Seen};
 use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::explanation::Explanation;
-use crate::group::{Grouper, LinkRule};
 use crate::map::{AnyView, DepthView, Pixel};
 use crate::noise::{NoiseModel, SensorNoise, Space};
-use crate::select::Selection;
 use crate::with_view;
 use bent::Bent;
 use contact::Contacts;
@@ -52,7 +49,7 @@ use turns::Rays;
 pub(super) static INFO: MethodInfo = MethodInfo {
     name: "planar",
     about: "Finds true planes: regions that one plane explains to within the sensor's noise, in inverse depth or disparity.",
-    stages: &["tiles", "grow", "judge", "assign", "group", "select", "fit", "label"],
+    stages: &["tiles", "grow", "judge", "assign", STAGES[0], STAGES[1], STAGES[2], STAGES[3]],
     tells_curved: true,
     params: PARAMS,
     build: |values| {
@@ -62,16 +59,7 @@ pub(super) static INFO: MethodInfo = MethodInfo {
 };
 
 const PARAMS: &[Param] = &[
-    Param {
-        name: "min",
-        default: 100.0,
-        min: 0.0,
-        max: u32::MAX as f64,
-        kind: ParamKind::Whole,
-        unit: "pixels",
-        meaning: "A plane has more pixels than this.",
-        source: None,
-    },
+    MIN,
     Param {
         name: "min-area",
         default: 0.0,
@@ -189,9 +177,7 @@ struct Runner {
     reach: Reach,
     contacts: Contacts,
     bent: Bent,
-    grouper: Grouper,
-    selection: Selection,
-    describer: Describer,
+    finisher: Finisher,
 }
 
 impl Method for Runner {
@@ -246,25 +232,15 @@ impl Runner {
         watch(Moment::Assigned, self, &noise);
         self.contacts.join(&mut self.regions.all, &mut self.image);
         job.done("assign");
-        let Runner { params, field, image, grouper, selection, describer, .. } = self;
+        let Runner { params, field, image, finisher, .. } = self;
         let ids = planes::of_image(image, field)?;
-        let groups = grouper.group(&ids, &LinkRule::new(ids.validity(), 0.0)?, job.threads);
-        job.done("group");
-        selection.select(groups, params.min)?;
-        job.done("select");
-        let runs = selection.runs(groups);
-        describer.tally(&map, runs, 0, &job.sensor, job.threads);
-        let seen = Seen { sensor: &job.sensor, noise: Some(&noise), valid_pixels: field.valid_pixels };
-        describer.describe(&map, runs, &seen, job.threads, &mut out.planes);
-        let mut records = Records { map: &map, groups, margin: 0, seen, threads: job.threads, selection, describer };
-        records.join(job.joiner.as_deref_mut(), out);
-        if params.min_area > 0.0 {
-            records.drop_smaller(params.min_area, out);
-        }
-        job.done("fit");
-        selection.paint(groups, &mut out.labels);
-        (out.width, out.height) = (map.width(), map.height());
-        (out.valid_pixels, out.filled_pixels) = (field.valid_pixels, 0);
+        let wanted = Wanted {
+            min: params.min,
+            min_area: params.min_area,
+            noise: Some(&noise),
+            valid_pixels: field.valid_pixels,
+        };
+        finisher.finish(&map, &ids, &wanted, job, out)?;
         out.curved = if job.curved { Some(self.find_bent(&map, job, &noise, out.curved.take())?) } else { None };
         job.done("label");
         Ok(())

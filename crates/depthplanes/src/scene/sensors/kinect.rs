@@ -14,7 +14,7 @@
 //!   surface is seen at more than 78 degrees (our choice; the dots get too thin to match).
 
 use super::{Exposure, millimetres};
-use crate::scene::exact::Random;
+use crate::random::Random;
 use crate::scene::pose::KINECT_FOCAL_PX;
 
 const BASELINE_M: f64 = 0.075;

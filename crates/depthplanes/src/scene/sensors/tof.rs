@@ -10,7 +10,7 @@
 //! - Not modelled: multipath, reflectivity, wiggling.
 
 use super::{Exposure, millimetres};
-use crate::scene::exact::Random;
+use crate::random::Random;
 
 const RANGE_M: std::ops::RangeInclusive<f64> = 0.5..=5.46;
 /// cos 80 degrees.

@@ -1,0 +1,87 @@
+//! The last stages of a method that says for each pixel which region it belongs to.
+//!
+//! In: a region image. Out: the detection: connected pieces of a region with more than `min` pixels, by decreasing size,
+//! fitted, described and painted.
+
+use super::records::Records;
+use super::{Job, Param, ParamKind};
+use crate::describe::{Describer, Seen};
+use crate::detection::Detection;
+use crate::error::Result;
+use crate::group::{Grouper, LinkRule};
+use crate::map::{DepthView, Pixel};
+use crate::noise::NoiseModel;
+use crate::select::Selection;
+
+/// Finishes detections; reuses its memory.
+#[derive(Default)]
+pub(super) struct Finisher {
+    pub(super) grouper: Grouper,
+    pub(super) selection: Selection,
+    pub(super) describer: Describer,
+}
+
+/// What a method knows of its regions beside their pixels.
+#[derive(Clone, Copy)]
+pub(super) struct Wanted<'a> {
+    /// A plane has strictly more pixels than this.
+    pub(super) min: u32,
+    /// A plane has at least this area, m2; 0 for off.
+    pub(super) min_area: f64,
+    /// What is known of the map's noise.
+    pub(super) noise: Option<&'a NoiseModel>,
+    /// Valid pixels of the map.
+    pub(super) valid_pixels: usize,
+}
+
+/// The stages of [`Finisher::finish`], in order.
+pub(super) const STAGES: [&str; 4] = ["group", "select", "fit", "label"];
+
+/// The parameter that all methods have.
+pub(super) const MIN: Param = Param {
+    name: "min",
+    default: 100.0,
+    min: 0.0,
+    max: u32::MAX as f64,
+    kind: ParamKind::Whole,
+    unit: "pixels",
+    meaning: "A plane has more pixels than this.",
+    source: None,
+};
+
+impl Finisher {
+    /// Makes a detection of a region image (0 = no region). The observer is told of [`STAGES`].
+    ///
+    /// # Errors
+    /// [`crate::Error::TooManyPlanes`].
+    pub(super) fn finish<T: Pixel>(
+        &mut self,
+        map: &DepthView<'_, T>,
+        image: &DepthView<'_, u16>,
+        wanted: &Wanted<'_>,
+        job: &mut Job<'_>,
+        out: &mut Detection,
+    ) -> Result<()> {
+        let Finisher { grouper, selection, describer } = self;
+        let &Wanted { min, min_area, noise, valid_pixels } = wanted;
+        let groups = grouper.group(image, &LinkRule::new(image.validity(), 0.0)?, job.threads);
+        job.done("group");
+        selection.select(groups, min)?;
+        job.done("select");
+        let runs = selection.runs(groups);
+        describer.tally(map, runs, 0, &job.sensor, job.threads);
+        let seen = Seen { sensor: &job.sensor, noise, valid_pixels };
+        describer.describe(map, runs, &seen, job.threads, &mut out.planes);
+        let mut records = Records { map, groups, margin: 0, seen, threads: job.threads, selection, describer };
+        records.join(job.joiner.as_deref_mut(), out);
+        if min_area > 0.0 {
+            records.drop_smaller(min_area, out);
+        }
+        job.done("fit");
+        selection.paint(groups, &mut out.labels);
+        (out.width, out.height) = (map.width(), map.height());
+        (out.valid_pixels, out.filled_pixels) = (valid_pixels, 0);
+        job.done("label");
+        Ok(())
+    }
+}
