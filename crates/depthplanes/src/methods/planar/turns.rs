@@ -10,9 +10,9 @@ use super::grid::{Grid, NONE};
 use super::grow::Region;
 use crate::camera::{Intrinsics, Measure, Sensor};
 
-/// Sine of the largest angle, 24 degrees, at which a surface turns gently. Spheres are modelled with 16 segments and more,
+/// Sine of the largest angle, 23.5 degrees, at which a surface turns gently. Spheres are modelled with 16 segments and more,
 /// which turn by 22.5 degrees, and noise makes a degree of difference; people build with sharper edges.
-const ANGLE: f64 = 0.407;
+const ANGLE: f64 = 0.399;
 /// Standard deviations of a pixel by which a tile lies off the plane where the surface does turn: what rounding does, its
 /// pixels may share.
 const DEVIATIONS: f64 = 3.0;
