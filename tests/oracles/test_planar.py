@@ -3,6 +3,8 @@
 import json
 import subprocess
 
+import cv2
+import numpy as np
 import pytest
 
 
@@ -47,16 +49,68 @@ def test_middlebury(program, data, tell, tmp_path):
     assert all(one["f_score"] >= 0.95 for one in found)
 
 
-def test_synpeb(program, data, tell, tmp_path):
+@pytest.mark.parametrize("setting, least", [([], 0.6), (["--ray", "0.3"], 0.88)])
+def test_synpeb(program, data, tell, tmp_path, setting, least):
     found = []
     for depth in sorted(data.glob("gt_synpeb/*.pinhole_depth.png")):
         truth = depth.with_name(depth.name.replace("_depth.", "_labels."))
-        reading = ["--encoding", "tum", "--intrinsics", "400,400,279.5,229.5"]
+        reading = ["--encoding", "tum", "--intrinsics", "400,400,279.5,229.5", *setting]
         found.append(score(program, tmp_path, depth, truth, reading))
     share = sum(one["f"] for one in found) / len(found)
-    tell_mean(tell, f"SynPEB, {len(found)} scans, planar, f {share:.2f}", found)
+    tell_mean(tell, f"SynPEB, {len(found)} scans, planar {' '.join(setting)}, f {share:.2f}", found)
     assert len(found) == 2
-    assert share >= 0.6
+    assert share >= least
+
+
+@pytest.mark.parametrize("setting, least", [([], 0.47), (["--noise", "0.004"], 0.51)])
+def test_evops_icl(program, data, tell, tmp_path, setting, least):
+    (depth,) = rows(data, "gt_evops/icl_0.depth")
+    reading = ["--encoding", "tum", "--intrinsics", ",".join(depth[7].split()[:4]), *setting]
+    truth = data / depth[0].replace(".depth.", ".labels.")
+    found = [score(program, tmp_path, data / depth[0], truth, reading)]
+    tell_mean(tell, f"EVOPS ICL-NUIM, 1 frame, planar {' '.join(setting)}", found)
+    assert mean(found, "f_score") >= least
+
+
+# Grey that falls by one with each unit of depth: of the T in T - grey, 350 leaves truth planes the flattest.
+NYU_FARTHEST = 350
+
+
+@pytest.mark.parametrize("setting, least", [([], 3.0), (["--min", "1000"], 3.4)])
+def test_nyu_dpd(program, data, tell, tmp_path, setting, least):
+    reading = ["--encoding", "millimetre", "--noise-growth", "0.075"]
+    found = []
+    for depth in sorted(data.glob("gt_nyu_dpd/depth/*.png")):
+        grey = cv2.imread(str(depth), cv2.IMREAD_UNCHANGED)
+        source = tmp_path / "depth.npy"
+        np.save(source, np.where(grey == 0, 0, NYU_FARTHEST - grey.astype(np.uint16)))
+        truth = data / "gt_nyu_dpd" / "labels" / depth.name
+        found.append(score(program, tmp_path, source, truth, [*reading, *setting]))
+    tell_mean(tell, f"NYU (DPD), {len(found)} images, planar {' '.join([*reading[2:], *setting])}", found)
+    assert len(found) == 22
+    assert mean(found, "correct") >= least
+
+
+def test_sr4000_dpd(program, data, tell, tmp_path):
+    found = []
+    for colours in sorted(data.glob("gt_sr4000_dpd/Scene?_GT*.bmp")):
+        truth = tmp_path / "truth.png"
+        cv2.imwrite(str(truth), regions_of(cv2.imread(str(colours))))
+        source = colours.with_name(colours.name[: len("Scene1")] + ".bmp")
+        found.append(score(program, tmp_path, source, truth, ["--encoding", "grey", "--noise", "2"]))
+    tell_mean(tell, f"SR4000 (DPD), {len(found)} images, planar --noise 2", found)
+    assert len(found) == 5
+    assert mean(found, "correct") >= 4.6
+
+
+def regions_of(colours):
+    """Labels of the colours of at least 100 pixels; white edges and shades of black are no planes."""
+    codes = colours.astype(np.int32) @ [1, 256, 65536]
+    labels = np.zeros(codes.shape, np.uint8)
+    for code, pixels in zip(*np.unique(codes, return_counts=True)):
+        if pixels >= 100 and code != 0xFFFFFF and max(int(code).to_bytes(3)) > 20:
+            labels[codes == code] = labels.max() + 1
+    return labels
 
 
 def mean(found, name):

@@ -2,7 +2,7 @@
 
 use depthplanes::explanation::Explanation;
 use depthplanes::noise::SensorNoise;
-use depthplanes::scene::{Random, SceneFrame, Spec};
+use depthplanes::scene::{Camera, Place, Pose, Random, Scene, SceneFrame, SensorModel, Spec, render};
 use depthplanes::{DepthView, Detector, Measure, Ngaf, Planar, Sensor};
 
 fn scene(spec: &str) -> SceneFrame {
@@ -203,4 +203,60 @@ fn a_method_that_does_not_tell_curved_surfaces_reports_none() {
     let frame = scene("curved:sensor=clean_mm,size=160x120");
     let mut detector = Detector::new(Ngaf::default()).unwrap().sensor(frame.sensor).curved(true);
     assert!(detector.detect(frame.view()).unwrap().curved.is_none());
+}
+
+/// Segments around a sphere as people model them, the fewest.
+const SEGMENTS: usize = 16;
+
+/// Adds a dome of flat quads, a mesh of half a sphere; how many there are.
+fn dome(scene: &mut Scene, place: Place, radius: f64) -> usize {
+    let step = std::f64::consts::TAU / SEGMENTS as f64;
+    let corner = |ring: usize, segment: usize| {
+        let (up, around) = (ring as f64 * step, segment as f64 * step);
+        [radius * up.cos() * around.cos(), radius * up.cos() * around.sin(), radius * up.sin()]
+    };
+    let rings = SEGMENTS / 4;
+    for (ring, segment) in (0..rings).flat_map(|ring| (0..SEGMENTS).map(move |segment| (ring, segment))) {
+        let [foot, top] = [ring, ring + 1].map(|ring| [corner(ring, segment), corner(ring, segment + 1)]);
+        // The last ring's quads are triangles: their upper corners are the pole.
+        let corners = [foot[0], foot[1], top[1], top[0]];
+        scene.facet_at(place, &corners[..if ring + 1 == rings { 3 } else { 4 }]);
+    }
+    rings * SEGMENTS
+}
+
+#[test]
+fn a_dome_of_flat_facets_is_no_planes_and_a_box_beside_it_keeps_its_faces() {
+    for (sensor, distance, yaw) in [
+        (SensorModel::Clean, 2.0, 0.0),
+        (SensorModel::Clean, 2.6, 7.0),
+        (SensorModel::CleanMm, 2.0, 11.25),
+        (SensorModel::CleanMm, 2.6, 3.0),
+    ] {
+        let mut scene = Scene::default();
+        scene.facet(&[[-5.0, 0.1, 0.0], [5.0, 0.1, 0.0], [5.0, 6.0, 0.0], [-5.0, 6.0, 0.0]]);
+        let facets = dome(&mut scene, Place::at(-0.45, distance).turned(yaw), 0.4);
+        scene.block(Place::at(0.45, distance).turned(30.0), [-0.25, -0.25, 0.0], [0.25, 0.25, 0.4]);
+        let camera = Camera::kinect(640, 480, Pose::at_height(1.2, 30.0)).unwrap();
+        let frame = render(&scene, &camera, sensor, 0).unwrap();
+        let found =
+            Detector::new(Planar::default()).unwrap().sensor(frame.sensor).detect(frame.view()).unwrap().clone();
+        let surfaces = &frame.truth.surfaces;
+        let (mut pixels, mut covered) = (vec![0; scene.surfaces.len() + 1], vec![0; scene.surfaces.len() + 1]);
+        for (&surface, &label) in surfaces.iter().zip(&found.labels) {
+            pixels[surface as usize] += 1;
+            covered[surface as usize] += usize::from(label > 0);
+        }
+        let share = |surfaces: std::ops::Range<usize>| {
+            let sum = |of: &[usize]| of[surfaces.clone()].iter().sum::<usize>() as f64;
+            sum(&covered) / sum(&pixels)
+        };
+        let (of_dome, of_box) = (share(2..facets + 2), share(facets + 2..facets + 8));
+        println!(
+            "{sensor:?} at {distance} m: {} planes, {of_dome:.3} of the dome, {of_box:.3} of the box",
+            found.planes.len()
+        );
+        assert!(of_dome < 0.01 && of_box > 0.98, "{sensor:?} {distance}: {of_dome} {of_box}");
+        assert_eq!(found.planes.len(), 4, "the floor and three faces");
+    }
 }

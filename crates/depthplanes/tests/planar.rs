@@ -173,6 +173,22 @@ fn noise_of_which_no_plane_is_made_has_none() {
 }
 
 #[test]
+fn a_slant_seen_along_rays_of_whole_pixels_is_one_plane_if_that_is_said() {
+    let mut random = Random::new(7);
+    let slant = |at: usize, off: f64| 300.0 + 2.0 * ((at % 160) as f64 + off) + 0.5 * (at / 160) as f64;
+    let map: Vec<f32> = (0..160 * 120).map(|at| slant(at, random.between(-0.5, 0.5)) as f32).collect();
+    let found = |ray: f64| {
+        let stated = Planar { noise: 0.05, ray, ..Planar::default() };
+        let sensor = Sensor { measure: Measure::Disparity, ..Sensor::default() };
+        let mut detector = Detector::new(stated).unwrap().sensor(sensor);
+        let found = detector.detect(DepthView::new(&map, 160, 120).unwrap()).unwrap();
+        found.planes.iter().map(|plane| plane.pixel_count).collect::<Vec<_>>()
+    };
+    assert_eq!(found(0.3), [160 * 120]);
+    assert_eq!(found(0.05), [0; 0]);
+}
+
+#[test]
 fn flat_surfaces_of_one_value_each_are_planes_of_their_own() {
     let (width, height) = (64, 48);
     // Their distance in depth is no step of the sensor's.

@@ -7,7 +7,7 @@ use super::assign::{self, Held};
 use super::curved::Sign;
 use super::grid::{Grid, NONE};
 use super::grow::{LEAST, Region};
-use super::planes::{BENT, Planes, of_slope};
+use super::planes::BENT;
 use super::{INFO, Moment, Planar, Runner};
 use crate::camera::{Hessian, Measure, Sensor};
 use crate::detection::Detection;
@@ -277,7 +277,7 @@ impl Seen {
             None => finding,
         };
         self.findings.push(finding);
-        let planes = Planes { regions: &run.regions.all, noise, confidence: run.params.confidence, curved: false };
+        let planes = run.params.planes(&run.regions.all, noise, false);
         let share = run.explainer.share(&run.field, grid, &planes, &run.facets.boxes, id);
         let is_explained = run.explainer.is_explained[id as usize];
         if let Some([share, most]) = share {
@@ -301,11 +301,10 @@ impl Seen {
         self.most = factor * run.params.confidence;
         let label = run.image[self.at[1] * run.field.stride + self.at[0]];
         self.assigned = if label == BENT { 0 } else { label };
+        let planes = run.params.planes(&run.regions.all, noise, false);
         let held = ids.into_iter().map(|id| {
-            let region = &run.regions.all[id as usize];
-            let [a, b, _] = region.abc;
-            let variance = noise.variance(region.at(middle[0], middle[1])) + f64::from(of_slope(a as f32, b as f32));
-            let sigma = variance.sqrt();
+            let region = planes.region(id);
+            let sigma = planes.variance(region, region.at(middle[0], middle[1])).sqrt();
             let off = (self.q - region.at(u, v)).abs() / sigma;
             Against { id, off, is_curved: region.is_curved, pixels: region.sums.n }
         });

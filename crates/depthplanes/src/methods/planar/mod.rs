@@ -37,7 +37,7 @@ use contact::Contacts;
 use curved::Facets;
 use explained::Explainer;
 use field::Field;
-use grow::Regions;
+use grow::{Region, Regions};
 use level::Level;
 use merge::Merger;
 use planes::Planes;
@@ -91,6 +91,17 @@ const PARAMS: &[Param] = &[
         source: None,
     },
     Param {
+        name: "ray",
+        // Rendered maps scatter by 0.06 (ICL-NUIM), and no camera is calibrated to much better.
+        default: 0.05,
+        min: 0.0,
+        max: 100.0,
+        kind: ParamKind::Real,
+        unit: "pixels",
+        meaning: "How well the ray of a pixel is known, one standard deviation; a slant makes noise of it.",
+        source: None,
+    },
+    Param {
         name: "confidence",
         default: 3.0,
         min: 0.5,
@@ -114,26 +125,34 @@ pub struct Planar {
     pub noise: f64,
     /// What the standard deviation of depth grows by with the square of the range, 1/m.
     pub noise_growth: f64,
+    /// How well the ray of a pixel is known, pixels, one standard deviation, 0..=100: what a surface's slope makes of it
+    /// comes on top of the noise.
+    pub ray: f64,
     /// How far from a plane its pixels may lie, standard deviations, 0.5..=100.
     pub confidence: f64,
 }
 
 impl Planar {
     fn from_values(values: &[f64]) -> Self {
-        let &[min, min_area, noise, noise_growth, confidence] = values else {
+        let &[min, min_area, noise, noise_growth, ray, confidence] = values else {
             panic!("one value for each row of PARAMS");
         };
-        Planar { min: min as u32, min_area, noise, noise_growth, confidence }
+        Planar { min: min as u32, min_area, noise, noise_growth, ray, confidence }
     }
 
-    fn values(&self) -> [f64; 5] {
-        let &Planar { min, min_area, noise, noise_growth, confidence } = self;
-        [min.into(), min_area, noise, noise_growth, confidence]
+    fn values(&self) -> [f64; 6] {
+        let &Planar { min, min_area, noise, noise_growth, ray, confidence } = self;
+        [min.into(), min_area, noise, noise_growth, ray, confidence]
     }
 
     /// Fewest pixels of a region of tiles: a plane has many of its pixels in tiles that it shares with others.
     fn least(&self) -> f64 {
         f64::from(self.min) * 0.5
+    }
+
+    /// What pixels are held against.
+    fn planes<'a>(&self, regions: &'a [Region], noise: &'a NoiseModel, curved: bool) -> Planes<'a> {
+        Planes { regions, noise, ray: self.ray, confidence: self.confidence, curved }
     }
 
     /// What the parameters say of the noise, if anything.
@@ -261,8 +280,9 @@ impl Runner {
 
     /// Regions of cells on one plane.
     fn grow(&mut self, noise: &NoiseModel, threads: usize, watch: &mut Watch<'_>) -> Result<()> {
-        self.pyramid.expect(noise, self.params.confidence, threads);
-        self.regions.grow(&mut self.pyramid, self.params.confidence);
+        let Planar { ray, confidence, .. } = self.params;
+        self.pyramid.expect(noise, ray, confidence, threads);
+        self.regions.grow(&mut self.pyramid, confidence);
         watch(Moment::Grown, self, noise);
         self.merger.merge(&self.pyramid.grids[0], &mut self.regions);
         watch(Moment::Merged, self, noise);
@@ -273,13 +293,13 @@ impl Runner {
     fn judge(&mut self, noise: &NoiseModel, rays: &Rays, watch: &mut Watch<'_>) {
         let Runner { params, field, pyramid, regions, merger, facets, explainer, .. } = self;
         facets.find_boxes(&pyramid.grids[0], regions);
-        let planes = Planes { regions: &regions.all, noise, confidence: params.confidence, curved: false };
+        let planes = params.planes(&regions.all, noise, false);
         explainer.find(field, &pyramid.grids[0], &planes, &merger.pairs, &facets.boxes);
         facets.mark(pyramid, regions, &merger.pairs, &explainer.is_explained, noise, rays);
         watch(Moment::Judged, self, noise);
         let Runner { pyramid, regions, merger, explainer, .. } = self;
         let mut explained = explainer.is_explained.iter();
-        let is_explained = |_: &grow::Region| explained.next() == Some(&true);
+        let is_explained = |_: &Region| explained.next() == Some(&true);
         merger.drop(&mut pyramid.grids[0], regions, is_explained);
     }
 
@@ -290,14 +310,14 @@ impl Runner {
         image.resize(field.q.len(), 0);
         pyramid.hand_up();
         let [tiles, blocks, ..] = &pyramid.grids;
-        let planes = Planes { regions: &regions.all, noise, confidence: params.confidence, curved };
+        let planes = params.planes(&regions.all, noise, curved);
         assign::assign(field, [tiles, blocks], &planes, threads, image);
     }
 
     /// Lets planes reach on, and lists those that touch.
     fn reach(&mut self, noise: &NoiseModel, threads: usize) {
         let Runner { params, field, regions, image, seams, reach, contacts, .. } = self;
-        let planes = Planes { regions: &regions.all, noise, confidence: params.confidence, curved: false };
+        let planes = params.planes(&regions.all, noise, false);
         seams.find(image, field.stride, threads);
         contacts.list(seams, image);
         reach.reach(field, &planes, seams, image, contacts);

@@ -6,14 +6,10 @@ use crate::error::Result;
 use crate::map::DepthView;
 use crate::noise::NoiseModel;
 
-/// How well the ray of a pixel is known, pixels, one standard deviation: what a surface's slope makes of it comes on top of
-/// the noise. Rendered maps scatter by 0.06 (ICL-NUIM), and no camera is calibrated to much better.
-const RAY: f32 = 0.05;
-
-/// Variance of q that a slope `(a, b)` of q adds.
+/// Variance of q that a slope `(a, b)` of q makes of a ray that is known to within `ray` pixels.
 #[inline(always)]
-pub(super) fn of_slope(a: f32, b: f32) -> f32 {
-    RAY * RAY * (a * a + b * b)
+pub(super) fn of_slope(ray: f32, a: f32, b: f32) -> f32 {
+    ray * ray * (a * a + b * b)
 }
 
 /// The regions of a map and the noise to expect.
@@ -21,6 +17,8 @@ pub(super) fn of_slope(a: f32, b: f32) -> f32 {
 pub(super) struct Planes<'a> {
     pub(super) regions: &'a [Region],
     pub(super) noise: &'a NoiseModel,
+    /// How well the ray of a pixel is known, pixels.
+    pub(super) ray: f64,
     /// How far from a plane its pixels may lie, standard deviations.
     pub(super) confidence: f64,
     /// Whether curved regions have labels, and planes have none.
@@ -47,11 +45,17 @@ impl Planes<'_> {
         }
     }
 
+    /// Variance of a pixel about a region's plane at q: the noise, and what the slope makes of the ray.
+    #[inline(always)]
+    pub(super) fn variance(&self, region: &Region, q: f64) -> f64 {
+        let [a, b, _] = region.abc.map(|number| number as f32);
+        self.noise.variance(q) + f64::from(of_slope(self.ray as f32, a, b))
+    }
+
     /// Square of the largest distance from a region's plane at q.
     #[inline(always)]
     pub(super) fn reach(&self, region: &Region, q: f64) -> f64 {
-        let [a, b, _] = region.abc;
-        self.confidence * self.confidence * (self.noise.variance(q) + f64::from(of_slope(a as f32, b as f32)))
+        self.confidence * self.confidence * self.variance(region, q)
     }
 }
 

@@ -10,9 +10,9 @@ use super::grid::{Grid, NONE};
 use super::grow::Region;
 use crate::camera::{Intrinsics, Measure, Sensor};
 
-/// Sine of the largest angle, 22 degrees, at which a surface turns gently. Spheres are modelled with 16 segments and more,
-/// people build with sharper edges.
-const ANGLE: f64 = 0.375;
+/// Sine of the largest angle, 23.5 degrees, at which a surface turns gently. Spheres are modelled with 16 segments and more,
+/// which turn by 22.5 degrees, and noise makes a degree of difference; people build with sharper edges.
+const ANGLE: f64 = 0.399;
 /// Standard deviations of a pixel by which a tile lies off the plane where the surface does turn: what rounding does, its
 /// pixels may share.
 const DEVIATIONS: f64 = 3.0;
@@ -22,7 +22,8 @@ const SHARE: f64 = 0.4;
 const FEW: f64 = 8.0;
 /// A region of so many times the pixels is no facet of the same surface: a wall beside a bevel.
 const LARGER: f64 = 4.0;
-/// Pixels that a region counts as having at least, when it is held against larger ones: facets come in all sizes.
+/// Pixels that a region counts as having at least, when it is held against larger ones: facets come in all sizes. Of
+/// regions that have so many the planes say by how much they turn.
 const USUAL: f64 = 240.0;
 /// Valid pixels of a tile whose mean says something.
 const HALF: f32 = 8.0;
@@ -66,6 +67,12 @@ impl Rays {
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Whether two planes differ by a small angle.
+fn is_gentle(a: [f64; 3], b: [f64; 3]) -> bool {
+    let (both, squares) = (dot(a, b), dot(a, a) * dot(b, b));
+    both > 0.0 && squares - both * both <= ANGLE * ANGLE * squares
 }
 
 /// A region and what it is held against.
@@ -134,6 +141,12 @@ impl Border<'_> {
             return false;
         }
         let own = middle(tile);
+        if let Some(other) = all.get(other as usize).filter(|other| other.sums.n.min(region.sums.n) >= USUAL) {
+            // Growth may have crossed the edge; the planes themselves say where it is.
+            let inner = [0, 1].map(|i| own[i] - 0.5 * side * step[i]);
+            let [before, behind] = [inner, [u, v]].map(|[u, v]| other.at(u, v) - region.at(u, v));
+            return before * behind < 0.0 && is_gentle(normal, rays.normal(other));
+        }
         let edge = [0, 1].map(|i| own[i] + 0.5 * side * step[i]);
         let from = rays.point(edge, region.at(edge[0], edge[1]));
         let (to, straight) = (rays.point([u, v], q), rays.point([u, v], on_plane));
