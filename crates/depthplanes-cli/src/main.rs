@@ -5,6 +5,7 @@ mod commands;
 mod failure;
 mod inputs;
 mod load;
+mod measures;
 mod natural;
 mod pairs;
 mod pool;

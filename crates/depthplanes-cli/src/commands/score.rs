@@ -2,9 +2,10 @@
 
 use crate::args::Score;
 use crate::failure::{Failure, Outcome, note};
+use crate::measures::{MEASURES, Measure, Scores, decimal, families};
 use crate::pairs::{self, Pair, Truth};
 use crate::table::{Align, aligned, row};
-use depthplanes::metrics::{Contingency, Evops, Partition, SegComp, Split, Tolerance, evops, partition, segcomp};
+use depthplanes::metrics::{Contingency, SegComp, Split, Tolerance};
 use depthplanes::scene::Spec;
 use depthplanes_io::formats::DecodeOptions;
 use depthplanes_io::{LabelImage, read_labels};
@@ -15,106 +16,8 @@ use std::io::Write;
 struct Scored {
     pair: Pair,
     size: (usize, usize),
-    /// Planes of the truth and of the prediction.
-    planes: (usize, usize),
-    segcomp: SegComp,
-    evops: Evops,
-    partition: Option<Partition>,
-    on_planes: Option<Partition>,
+    scores: Scores,
 }
-
-/// What a measure reads off a pair.
-#[derive(Clone, Copy)]
-enum Reading {
-    Count(fn(&Scored) -> usize),
-    Share(fn(&Scored) -> f64),
-    /// A number that some pairs do not have.
-    Known(fn(&Scored) -> Option<f64>),
-}
-use Reading::{Count, Known, Share};
-
-/// One measure: a line of the table, a field of the JSON.
-struct Measure {
-    /// The JSON object that it belongs to.
-    family: &'static str,
-    name: &'static str,
-    /// Heading of its column in the table of several pairs; empty if it has none.
-    column: &'static str,
-    meaning: &'static str,
-    reading: Reading,
-}
-
-impl Measure {
-    fn value(&self, scored: &Scored) -> Option<f64> {
-        match self.reading {
-            Count(count) => Some(count(scored) as f64),
-            Share(share) => Some(share(scored)),
-            Known(number) => number(scored),
-        }
-    }
-
-    /// For people.
-    fn written(&self, scored: &Scored) -> String {
-        match self.reading {
-            Count(count) => count(scored).to_string(),
-            _ => decimal(self.value(scored)),
-        }
-    }
-
-    fn json(&self, scored: &Scored) -> Value {
-        match self.reading {
-            Count(count) => count(scored).into(),
-            _ => self.value(scored).into(),
-        }
-    }
-
-    /// Over the pairs that have it.
-    fn mean(&self, scored: &[Scored]) -> Option<f64> {
-        let values: Vec<f64> = scored.iter().filter_map(|one| self.value(one)).collect();
-        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
-    }
-}
-
-const fn measure(
-    family: &'static str,
-    name: &'static str,
-    column: &'static str,
-    meaning: &'static str,
-    reading: Reading,
-) -> Measure {
-    Measure { family, name, column, meaning, reading }
-}
-
-/// In the order of the table; a family's measures stand together.
-#[rustfmt::skip]
-const MEASURES: &[Measure] = &[
-    measure("planes", "truth", "truth", "planes of the truth", Count(|s| s.planes.0)),
-    measure("planes", "predicted", "pred", "predicted planes", Count(|s| s.planes.1)),
-    measure("segcomp", "correct", "correct", "truth planes found by one predicted plane", Count(|s| s.segcomp.correct.len())),
-    measure("segcomp", "over_segmented", "over", "truth planes cut into several", Count(|s| s.segcomp.over_segmented.len())),
-    measure("segcomp", "under_segmented", "under", "predicted planes that join several", Count(|s| s.segcomp.under_segmented.len())),
-    measure("segcomp", "missed", "missed", "truth planes in none of these", Count(|s| s.segcomp.missed.len())),
-    measure("segcomp", "noise", "noise", "predicted planes in none of these", Count(|s| s.segcomp.noise.len())),
-    measure("synpeb", "f", "f", "share of the truth planes that are correct", Known(|s| s.segcomp.f)),
-    measure("synpeb", "k", "k", "the same, weighted by pixels", Known(|s| s.segcomp.k)),
-    measure("evops", "precision", "prec", "share of the predicted planes with IoU >= 0.75", Share(|s| s.evops.precision)),
-    measure("evops", "recall", "recall", "share of the truth planes with IoU >= 0.75", Share(|s| s.evops.recall)),
-    measure("evops", "f_score", "F", "harmonic mean of both", Share(|s| s.evops.f_score)),
-    measure("evops", "mean_iou", "", "mean IoU of the matched planes", Share(|s| s.evops.mean_iou)),
-    measure("evops", "mean_dice", "", "their mean Dice coefficient", Share(|s| s.evops.mean_dice)),
-    measure("evops", "panoptic_iou", "panoptic", "mean_iou times f_score", Share(|s| s.evops.panoptic_iou)),
-    measure("evops", "panoptic_dice", "", "mean_dice times f_score", Share(|s| s.evops.panoptic_dice)),
-    measure("evops", "usr", "", "share of the predicted planes that join several", Share(|s| s.evops.under_segmented)),
-    measure("evops", "osr", "", "share of the truth planes cut into several", Share(|s| s.evops.over_segmented)),
-    measure("evops", "missed", "", "share of the truth planes that are missed", Share(|s| s.evops.missed)),
-    measure("evops", "noise", "", "share of the predicted planes that are noise", Share(|s| s.evops.noise)),
-    measure("partition", "rand_index", "RI", "RI over all pixels, no plane being one more region", Known(|s| Some(s.partition?.rand_index))),
-    measure("partition", "variation_of_information", "VOI", "VOI, bits; 0 is best", Known(|s| Some(s.partition?.variation_of_information))),
-    measure("partition", "segmentation_covering", "SC", "SC", Known(|s| Some(s.partition?.segmentation_covering))),
-    measure("on_planes", "rand_index", "", "RI over the pixels on truth planes", Known(|s| Some(s.on_planes?.rand_index))),
-    measure("on_planes", "variation_of_information", "", "VOI there", Known(|s| Some(s.on_planes?.variation_of_information))),
-    measure("on_planes", "segmentation_covering", "", "SC there", Known(|s| Some(s.on_planes?.segmentation_covering))),
-];
 
 pub(super) fn run(wanted: &Score, out: &mut dyn Write) -> Outcome {
     let tolerance = Tolerance::new(wanted.tolerance)?;
@@ -147,15 +50,7 @@ fn score(pair: Pair, tolerance: Tolerance, truth_from: u16) -> Outcome<Scored> {
     }
     let table = Contingency::new(&truth.labels, &prediction.labels)?.truth_from(truth_from);
     warn_of_maps(&pair, &table);
-    Ok(Scored {
-        pair,
-        size,
-        planes: (table.truth_planes().len(), table.predicted_planes().len()),
-        segcomp: segcomp(&table, tolerance),
-        evops: evops(&table),
-        partition: partition(&table),
-        on_planes: partition(&table.on_truth_planes()),
-    })
+    Ok(Scored { pair, size, scores: Scores::of(&table, tolerance) })
 }
 
 /// More labels than anybody gives: a depth map that was taken for a label image.
@@ -191,7 +86,9 @@ fn one_pair(scored: &Scored) -> String {
     let (truth, prediction) = (scored.pair.truth.name(), scored.pair.prediction.display());
     let mut rows = vec![row(["measure", "", "value", "meaning"])];
     rows.extend(
-        MEASURES.iter().map(|measure| row([measure.family, measure.name, &measure.written(scored), measure.meaning])),
+        MEASURES
+            .iter()
+            .map(|measure| row([measure.family, measure.name, &measure.written(&scored.scores), measure.meaning])),
     );
     let columns = [Align::Left, Align::Left, Align::Right, Align::Left];
     format!("{prediction} against {truth}: {width} x {height} pixels\n{}", aligned(&columns, &rows))
@@ -204,19 +101,21 @@ fn several_pairs(scored: &[Scored]) -> String {
         std::iter::once(name.to_string()).chain(columns.iter().map(|measure| cell(measure))).collect::<Vec<_>>()
     };
     let mut rows = vec![line("pair", &|measure| measure.column.to_string())];
-    rows.extend(scored.iter().map(|one| line(&one.pair.name, &|measure| measure.written(one))));
-    rows.push(line("mean", &|measure| decimal(measure.mean(scored))));
+    rows.extend(scored.iter().map(|one| line(&one.pair.name, &|measure| measure.written(&one.scores))));
+    rows.push(line("mean", &|measure| decimal(mean(measure, scored))));
     let mut aligns = vec![Align::Right; rows[0].len()];
     aligns[0] = Align::Left;
     aligned(&aligns, &rows)
 }
 
-fn decimal(value: Option<f64>) -> String {
-    value.map_or("-".into(), |value| format!("{value:.3}"))
+/// Over the pairs that have it.
+fn mean(measure: &Measure, scored: &[Scored]) -> Option<f64> {
+    let values: Vec<f64> = scored.iter().filter_map(|one| measure.value(&one.scores)).collect();
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
 fn document(wanted: &Score, scored: &[Scored]) -> Value {
-    let means = families(|measure| measure.mean(scored).into());
+    let means = families(|measure| mean(measure, scored).into());
     json!({
         "schema": "depthplanes.score/1",
         "version": env!("CARGO_PKG_VERSION"),
@@ -233,19 +132,9 @@ fn record(scored: &Scored) -> Value {
     record.insert("prediction".into(), scored.pair.prediction.display().to_string().into());
     record.insert("width".into(), scored.size.0.into());
     record.insert("height".into(), scored.size.1.into());
-    record.append(&mut families(|measure| measure.json(scored)));
-    record.insert("classes".into(), classes(&scored.segcomp));
+    record.append(&mut families(|measure| measure.json(&scored.scores)));
+    record.insert("classes".into(), classes(&scored.scores.segcomp));
     record.into()
-}
-
-/// An object for each family, with a field for each of its measures.
-fn families(value: impl Fn(&Measure) -> Value) -> Map<String, Value> {
-    let mut all = Map::new();
-    for measure in MEASURES {
-        let family = all.entry(measure.family).or_insert_with(|| json!({}));
-        family[measure.name] = value(measure);
-    }
-    all
 }
 
 /// SegComp's classes, label by label.
