@@ -25,6 +25,8 @@ pub(crate) enum Command {
     Inspect { inputs: Vec<OsString>, reading: Box<Reading>, json: bool },
     Noise { inputs: Vec<OsString>, reading: Box<Reading>, json: bool },
     Score(Score),
+    Eval(Eval),
+    Datasets,
     Demo { out_dir: PathBuf },
     Methods,
     Params { method: Option<&'static MethodInfo> },
@@ -79,6 +81,20 @@ pub(crate) struct Score {
     pub(crate) json: bool,
 }
 
+/// `depthplanes eval`.
+pub(crate) struct Eval {
+    pub(crate) datasets: Vec<String>,
+    pub(crate) methods: Vec<String>,
+    /// Parameters given, by flag; each goes to the methods that have it.
+    pub(crate) parameters: Vec<(&'static str, f64)>,
+    /// Folder of sets.
+    pub(crate) data: Option<PathBuf>,
+    pub(crate) report: PathBuf,
+    pub(crate) repeat: usize,
+    pub(crate) jobs: usize,
+    pub(crate) threads: usize,
+}
+
 /// Parses the command line; on wrong use, or where help is asked for, it prints and exits.
 pub(crate) fn parse() -> Command {
     let matches = program().get_matches();
@@ -97,6 +113,8 @@ pub(crate) fn parse() -> Command {
             json: matches.get_flag("json"),
         },
         "score" => Command::Score(score(matches)),
+        "eval" => Command::Eval(eval(matches)),
+        "datasets" => Command::Datasets,
         "demo" => Command::Demo { out_dir: path(matches, "out-dir").expect("it has a default") },
         "methods" => Command::Methods,
         "params" => Command::Params { method: method(matches) },
@@ -155,6 +173,9 @@ fn program() -> clap::Command {
             inspect_command(),
             noise_command(),
             score_command(),
+            eval_command(),
+            clap::Command::new("datasets")
+                .about("Lists the sets of maps that `eval` knows, and how their folders have to look"),
             demo_command(),
             clap::Command::new("methods").about("Lists the methods"),
             clap::Command::new("params")
@@ -291,6 +312,36 @@ fn score_command() -> clap::Command {
         ])
 }
 
+fn eval_command() -> clap::Command {
+    let names = METHODS.iter().map(|method| method.name);
+    clap::Command::new("eval")
+        .about("Runs methods over sets of maps and writes a report; started again, it goes on where it was interrupted")
+        .after_help(EXIT_CODES)
+        .args([
+            Arg::new("datasets").value_name("SET").required(true).num_args(1..).help(
+                "A set in the folder of sets, NAME=DIR, or scene:SPEC (seed=1-20 for twenty seeds); \
+                 `depthplanes datasets` lists them",
+            ),
+            Arg::new("methods")
+                .long("methods")
+                .value_name("A,B,..")
+                .value_delimiter(',')
+                .value_parser(PossibleValuesParser::new(names))
+                .default_value(methods::default().name)
+                .help("Methods to run"),
+            flags::path("data", "DIR").help("Folder of sets"),
+            flags::path("report", "DIR").required(true).help("Folder of the report and of what is kept to go on from"),
+            flags::count("repeat", "N")
+                .default_value("3")
+                .help("Timed runs of each method on each map, after a warm-up"),
+            flags::count("jobs", "N")
+                .default_value("1")
+                .help("Maps worked on at the same time; times are truest with one"),
+            flags::count("threads", "N").default_value("1").help("Threads for each map"),
+        ])
+        .args(flags::method_parameters())
+}
+
 fn demo_command() -> clap::Command {
     let folder = flags::path("out-dir", "DIR").default_value("depthplanes-demo").help("Where the files go");
     clap::Command::new("demo").about("Runs a made-up scene through the whole pipeline").arg(folder)
@@ -323,6 +374,21 @@ fn detect(matches: &ArgMatches) -> Detect {
         json: matches.get_flag("json"),
         rows: count("rows"),
         repeat: matches.get_one("repeat").copied().unwrap_or(0),
+        jobs: count("jobs"),
+        threads: count("threads"),
+    }
+}
+
+fn eval(matches: &ArgMatches) -> Eval {
+    let texts = |name| matches.get_many::<String>(name).expect("it has a value").cloned().collect();
+    let count = |name| *matches.get_one::<usize>(name).expect("it has a default");
+    Eval {
+        datasets: texts("datasets"),
+        methods: texts("methods"),
+        parameters: flags::parameters_given(matches),
+        data: path(matches, "data"),
+        report: path(matches, "report").expect("it is required"),
+        repeat: count("repeat"),
         jobs: count("jobs"),
         threads: count("threads"),
     }

@@ -17,7 +17,12 @@ use std::io::Read;
 /// A camera file that cannot be read, intrinsics that no camera has, half a stereo rig.
 pub(crate) fn options(reading: &Reading) -> Outcome<ReadOptions> {
     let mut options = ReadOptions {
-        decode: DecodeOptions { limits: Limits::default(), member: reading.member.clone(), raw_size: reading.raw_size },
+        decode: DecodeOptions {
+            limits: Limits::default(),
+            member: reading.member.clone(),
+            raw_size: reading.raw_size,
+            luminance: false,
+        },
         preset: reading.preset.clone(),
         encoding: reading.encoding.clone(),
         scale: reading.scale,

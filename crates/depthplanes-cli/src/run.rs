@@ -83,6 +83,12 @@ impl Recipe {
         Ok(self)
     }
 
+    /// Every parameter with its value, for people and for records.
+    pub(crate) fn written(&self) -> String {
+        let all = self.method.params.iter().zip(&self.values);
+        all.map(|(param, value)| format!("{} {value}", param.name)).collect::<Vec<_>>().join(", ")
+    }
+
     fn outliner(&self) -> Outcome<Option<Outliner>> {
         Ok(self.outlines.map(Outliner::new).transpose()?)
     }

@@ -1,5 +1,6 @@
-//! `depthplanes methods`, `params`, `formats`, `encodings`, `presets`: the libraries' tables.
+//! `depthplanes methods`, `params`, `formats`, `encodings`, `presets`, `datasets`: the tables.
 
+use crate::eval::datasets::DATASETS;
 use crate::failure::Outcome;
 use crate::table::{Align, aligned, row};
 use depthplanes::methods::{METHODS, MethodInfo, Param};
@@ -29,9 +30,9 @@ pub(super) fn params(method: Option<&MethodInfo>, out: &mut dyn Write) -> Outcom
 }
 
 fn param(param: &Param) -> Vec<String> {
-    let source = param.source.map_or("ours".to_string(), |section| format!("paper, {section}"));
+    let source = param.source.unwrap_or("ours");
     let flag = format!("--{}", param.name.replace('_', "-"));
-    row([&flag, &param.default.to_string(), param.unit, &param.accepted(), &source, param.meaning])
+    row([&flag, &param.default.to_string(), param.unit, &param.accepted(), source, param.meaning])
 }
 
 pub(super) fn formats(out: &mut dyn Write) -> Outcome {
@@ -56,6 +57,18 @@ pub(super) fn presets(out: &mut dyn Write) -> Outcome {
         let noise = preset.noise.map_or("estimated".to_string(), |noise| noise.to_string());
         row([preset.name, preset.encoding, &size, &noise, preset.about])
     }));
+    print(&rows, out)
+}
+
+pub(super) fn datasets(out: &mut dyn Write) -> Outcome {
+    let mut rows = vec![row(["set", "folder", "about", "the folder holds"])];
+    rows.extend(DATASETS.iter().map(|set| row([set.name, set.folder, set.about, set.layout])));
+    rows.push(row([
+        "scene:SPEC",
+        "-",
+        "Made-up scenes with exact truth; seed=1-20 makes twenty.",
+        "nothing: they are made",
+    ]));
     print(&rows, out)
 }
 

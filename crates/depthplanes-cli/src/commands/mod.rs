@@ -23,6 +23,8 @@ pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
         Command::Inspect { inputs, reading, json } => inspect::run(inputs, reading, *json, out),
         Command::Noise { inputs, reading, json } => noise::run(inputs, reading, *json, out),
         Command::Score(wanted) => score::run(wanted, out),
+        Command::Eval(wanted) => crate::eval::run(wanted, out),
+        Command::Datasets => lists::datasets(out),
         Command::Demo { out_dir } => demo::run(out_dir, out),
         Command::Methods => lists::methods(out),
         Command::Params { method } => lists::params(*method, out),
@@ -38,7 +40,7 @@ pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
 ///
 /// # Errors
 /// A file of that name, or a disk that refuses.
-fn make_folder(folder: &Path) -> Outcome {
+pub(crate) fn make_folder(folder: &Path) -> Outcome {
     refuse_file(folder)?;
     let failed = |error| Failure::machine(format!("{}: the folder cannot be made: {error}", folder.display()));
     std::fs::create_dir_all(folder).map_err(failed)

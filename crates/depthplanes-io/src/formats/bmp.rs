@@ -95,11 +95,21 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
         }
     }
     let mut warnings = Vec::new();
-    let grey = single_channel("bmp", samples, channels, channels == 4, &mut warnings)?;
+    let grey = if options.luminance {
+        samples.chunks_exact(channels).map(luminance).collect()
+    } else {
+        single_channel("bmp", samples, channels, channels == 4, &mut warnings)?
+    };
     if header.bits <= 8 {
         warnings.clear(); // A grey palette is the ordinary way to store one channel.
     }
     Ok(Image { width, height, pixels: Pixels::U8(grey), sample: "uint8", warnings })
+}
+
+/// Of blue, green and red, as of standard-definition television (ITU-R BT.601).
+fn luminance(pixel: &[u8]) -> u8 {
+    let weighed = 114 * u32::from(pixel[0]) + 587 * u32::from(pixel[1]) + 299 * u32::from(pixel[2]);
+    ((weighed + 500) / 1000) as u8
 }
 
 /// Blue, green, red of each palette entry.

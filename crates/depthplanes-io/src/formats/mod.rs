@@ -83,6 +83,9 @@ pub struct DecodeOptions {
     pub member: Option<String>,
     /// Columns and rows of a headerless file; stating them selects the format `raw`.
     pub raw_size: Option<(usize, usize)>,
+    /// Whether a colour bitmap (BMP) becomes its luminance instead of being refused: label images with a colour for each
+    /// plane.
+    pub luminance: bool,
 }
 
 /// A map as it stands in the file, before anything is said of its unit.

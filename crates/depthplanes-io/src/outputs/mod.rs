@@ -20,6 +20,7 @@ mod picture;
 mod planes;
 mod record;
 mod shade;
+mod tinted;
 
 use depthplanes::methods::MethodInfo;
 use depthplanes::outline::Outlines;
@@ -35,6 +36,7 @@ pub use labels::{npy as labels_npy, png as labels_png};
 pub use picture::grey16_png;
 pub use planes::{CSV_COLUMNS, document as json_document, line as json_line};
 pub use record::SCHEMA;
+pub use tinted::tinted_png;
 
 /// All outputs.
 pub const OUTPUTS: &[Output] =

@@ -19,7 +19,7 @@ pub(super) const OUTPUT: Output = Output {
 };
 
 /// Share of the plane's colour; the rest is the map's grey, so that relief stays visible.
-const COLOUR_SHARE: f32 = 0.58;
+pub(super) const COLOUR_SHARE: f32 = 0.58;
 /// How much an outline is darker than its plane.
 const OUTLINE_SHARE: f32 = 0.5;
 

@@ -42,7 +42,7 @@ const PARAMS: &[Param] = &[
         kind: ParamKind::Real,
         unit: "map units",
         meaning: "Largest difference between neighbours of one group; the paper takes 1 for near-perfect maps, 2 for sensors.",
-        source: Some("3c"),
+        source: Some("paper, 3c"),
     },
     Param {
         name: "min",
@@ -52,7 +52,7 @@ const PARAMS: &[Param] = &[
         kind: ParamKind::Whole,
         unit: "pixels",
         meaning: "A group is a plane if it has more pixels than this; the paper takes 32, 64, 128, 256.",
-        source: Some("3d"),
+        source: Some("paper, 3d"),
     },
     Param {
         name: "window",
@@ -62,7 +62,7 @@ const PARAMS: &[Param] = &[
         kind: ParamKind::OddOrOff,
         unit: "pixels",
         meaning: "Side of the window whose mean fills a missing pixel, unless more than half of it is missing.",
-        source: Some("3b"),
+        source: Some("paper, 3b"),
     },
     Param {
         name: "passes",

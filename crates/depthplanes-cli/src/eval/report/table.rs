@@ -1,0 +1,131 @@
+//! The tables of a report: a line for each method, a table for each set.
+
+use super::super::rows::{Found, Row};
+use super::{datasets, mean, methods, of, per_megapixel};
+use crate::table::{Align, aligned};
+
+/// A table with a heading row.
+pub(super) struct Table {
+    pub(super) title: String,
+    pub(super) head: Vec<String>,
+    pub(super) rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// Aligned columns.
+    pub(super) fn text(&self) -> String {
+        let mut rows = vec![self.head.clone()];
+        rows.extend(self.rows.iter().cloned());
+        format!("{}\n{}", self.title, aligned(&aligns(&self.head), &rows))
+    }
+
+    pub(super) fn markdown(&self) -> String {
+        let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+        let rule = format!("|---|{}\n", "---:|".repeat(self.head.len() - 1));
+        line(&self.head) + &rule + &self.rows.iter().map(|row| line(row)).collect::<String>()
+    }
+}
+
+/// Names to the left, numbers to the right.
+fn aligns(head: &[String]) -> Vec<Align> {
+    let mut aligns = vec![Align::Right; head.len()];
+    aligns[0] = Align::Left;
+    aligns
+}
+
+/// A column: its heading, and what it reads off a row.
+struct Column {
+    head: &'static str,
+    digits: usize,
+    value: fn(&Row, &Found) -> Option<f64>,
+    /// Whether it needs a truth.
+    is_score: bool,
+}
+
+fn scored(found: &Found, measure: &str) -> Option<f64> {
+    found.scores.get(measure).copied()
+}
+
+const fn column(head: &'static str, digits: usize, value: fn(&Row, &Found) -> Option<f64>) -> Column {
+    Column { head, digits, value, is_score: false }
+}
+
+const fn score(head: &'static str, digits: usize, value: fn(&Row, &Found) -> Option<f64>) -> Column {
+    Column { head, digits, value, is_score: true }
+}
+
+/// The columns; each cell is a mean over the maps that have the number.
+#[rustfmt::skip]
+const COLUMNS: &[Column] = &[
+    column("ms", 2, |_, found| Some(found.median_ms)),
+    column("ms/MP", 2, |row, found| Some(per_megapixel(row, found))),
+    column("planes", 1, |_, found| Some(found.planes as f64)),
+    column("% of valid", 1, |row, found| Some(100.0 * found.labelled_pixels as f64 / row.valid_pixels.max(1) as f64)),
+    score("truth", 1, |_, found| scored(found, "planes.truth")),
+    score("correct", 2, |_, found| scored(found, "segcomp.correct")),
+    score("over", 2, |_, found| scored(found, "segcomp.over_segmented")),
+    score("under", 2, |_, found| scored(found, "segcomp.under_segmented")),
+    score("missed", 2, |_, found| scored(found, "segcomp.missed")),
+    score("noise", 2, |_, found| scored(found, "segcomp.noise")),
+    score("F", 3, |_, found| scored(found, "evops.f_score")),
+    score("RI", 3, |_, found| scored(found, "partition.rand_index")),
+    score("VOI", 3, |_, found| scored(found, "partition.variation_of_information")),
+    score("SC", 3, |_, found| scored(found, "partition.segmentation_covering")),
+    score("normal deg", 3, |_, found| found.normal_error_deg),
+];
+
+/// A table for each set.
+pub(super) fn all(rows: &[&Row]) -> Vec<Table> {
+    datasets(rows).iter().map(|dataset| of_dataset(rows, dataset)).collect()
+}
+
+fn of_dataset(rows: &[&Row], dataset: &str) -> Table {
+    let methods = methods(rows);
+    let has_truth =
+        methods.iter().any(|method| of(rows, dataset, method).iter().any(|(_, found)| !found.scores.is_empty()));
+    let columns: Vec<&Column> = COLUMNS.iter().filter(|column| has_truth || !column.is_score).collect();
+    let line = |method: &String| {
+        let found = of(rows, dataset, method);
+        let cell = |column: &&Column| {
+            let value = mean(found.iter().map(|(row, found)| (column.value)(row, found)));
+            value.map_or("-".into(), |value| format!("{value:.*}", column.digits))
+        };
+        let first = [method.clone(), found.len().to_string()];
+        first.into_iter().chain(columns.iter().map(cell)).collect()
+    };
+    let head =
+        ["method", "maps"].into_iter().chain(columns.iter().map(|column| column.head)).map(str::to_string).collect();
+    Table { title: dataset.into(), head, rows: methods.iter().map(line).collect() }
+}
+
+/// Every row with its key and the columns' numbers.
+pub(super) fn csv(rows: &[&Row]) -> String {
+    let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+    let fixed = [
+        "dataset",
+        "map",
+        "method",
+        "parameters",
+        "version",
+        "machine",
+        "date",
+        "jobs",
+        "repeat",
+        "columns",
+        "rows",
+        "least ms",
+    ];
+    let head = fixed.into_iter().chain(COLUMNS.iter().map(|column| column.head)).map(quoted);
+    let mut text = head.collect::<Vec<_>>().join(",") + "\n";
+    for row in rows {
+        let key = &row.key;
+        let named = [&key.dataset, &key.map, &key.method, &key.parameters, &key.version, &row.machine, &row.date];
+        let mut cells: Vec<String> = named.into_iter().map(|cell| quoted(cell)).collect();
+        cells.extend([row.jobs, key.repeat, row.size[0], row.size[1]].map(|number| number.to_string()));
+        cells.push(least(row));
+        let value = |column: &Column| super::found(row).and_then(|found| (column.value)(row, found));
+        cells.extend(COLUMNS.iter().map(|column| value(column).map_or(String::new(), |value| value.to_string())));
+        text += &(cells.join(",") + "\n");
+    }
+    text
+}

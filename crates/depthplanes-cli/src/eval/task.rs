@@ -1,0 +1,117 @@
+//! One map by one method: found, timed, scored, its labels written.
+
+use super::LABELS;
+use super::datasets::{Item, TruthOf};
+use super::machine;
+use super::rows::{Found, Key, Made, Row, Store};
+use crate::failure::{Failure, Outcome};
+use crate::measures::{MEASURES, Scores};
+use crate::run::{Recipe, Runner};
+use depthplanes::Detection;
+use depthplanes::metrics::{Contingency, Tolerance, evops, plane_errors, segcomp};
+use depthplanes_io::Frame;
+use depthplanes_io::outputs::{grey16_png, write_file};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// A map and a method.
+pub(super) struct Task<'a> {
+    pub(super) item: &'a Item,
+    pub(super) recipe: &'a Recipe,
+    pub(super) key: Key,
+}
+
+/// SegComp tolerances of the curve.
+const TOLERANCES: [f64; 10] = [0.51, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
+
+impl Task<'_> {
+    /// Whether its row is there, and its labels are.
+    pub(super) fn is_done(&self, store: &Store, folder: &Path) -> bool {
+        store.get(&self.key).is_some_and(|row| match &row.outcome {
+            Made::Found(found) => folder.join(&found.labels).is_file(),
+            Made::Refused(_) => true,
+        })
+    }
+
+    /// Its row.
+    ///
+    /// # Errors
+    /// A map or a truth that cannot be read, a disk that refuses; not what the method itself refuses.
+    pub(super) fn run(&self, folder: &Path, machine: &str, jobs: usize) -> Outcome<Row> {
+        let frame = (self.item.frame)().map_err(|failure| failure.of_input(&self.item.name))?;
+        let valid_pixels = valid_pixels(&frame)?;
+        let outcome = match Runner::new(self.recipe).detect(&frame, self.key.repeat) {
+            Ok(found) => {
+                let times = found.times.unwrap_or_default().total;
+                let labels = self.labels_file();
+                let detection = &found.detection;
+                write_file(&folder.join(&labels), &grey16_png(frame.width, frame.height, &detection.labels))?;
+                let mut made = Found {
+                    planes: detection.planes.len(),
+                    labelled_pixels: detection.labels.iter().filter(|&&label| label > 0).count(),
+                    median_ms: times.median,
+                    least_ms: times.min,
+                    labels,
+                    scores: BTreeMap::new(),
+                    correct_at: Vec::new(),
+                    normal_error_deg: None,
+                };
+                if let Some(truth) = &self.item.truth {
+                    score(&truth()?, detection, &mut made).map_err(|failure| failure.of_input(&self.item.name))?;
+                }
+                Made::Found(made)
+            }
+            Err(failure) => Made::Refused(failure.to_string()),
+        };
+        let size = [frame.width, frame.height];
+        let (key, machine, date) = (self.key.clone(), machine.to_string(), machine::today());
+        Ok(Row { key, machine, date, jobs, size, valid_pixels, outcome })
+    }
+
+    /// Within the report's folder; a name for each key.
+    fn labels_file(&self) -> String {
+        let Key { dataset, map, method, parameters, .. } = &self.key;
+        let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+        let name: String = format!("{dataset}.{map}.{method}").chars().map(plain).collect();
+        // FNV-1a: parameters are told apart without their whole text in the name.
+        let hash = parameters
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+        format!("{LABELS}/{name}.{:08x}.png", hash as u32)
+    }
+}
+
+fn valid_pixels(frame: &Frame) -> Outcome<usize> {
+    Ok(depthplanes::with_view!(frame.view()?, view => view.valid_pixels()))
+}
+
+/// Adds what the measures say.
+fn score(truth: &TruthOf, detection: &Detection, made: &mut Found) -> Outcome {
+    let (size, own) = ([truth.labels.width, truth.labels.height], [detection.width, detection.height]);
+    if size != own {
+        return Err(Failure::request(format!(
+            "the truth is {} x {}, the map {} x {}",
+            size[0], size[1], own[0], own[1]
+        )));
+    }
+    let table = Contingency::new(&truth.labels.labels, &detection.labels)?.truth_from(truth.from);
+    let scores = Scores::of(&table, Tolerance::default());
+    let value = |measure: &crate::measures::Measure| {
+        Some((format!("{}.{}", measure.family, measure.name), measure.value(&scores)?))
+    };
+    made.scores = MEASURES.iter().filter_map(value).collect();
+    let correct = |tolerance| Ok((tolerance, segcomp(&table, Tolerance::new(tolerance)?).correct.len()));
+    made.correct_at = TOLERANCES.iter().map(|&tolerance| correct(tolerance)).collect::<Outcome<_>>()?;
+    made.normal_error_deg = normal_error(truth, detection, &table);
+    Ok(())
+}
+
+/// Median angle between the normals of matched planes, degrees; none without a match or without planes in space.
+fn normal_error(truth: &TruthOf, detection: &Detection, table: &Contingency) -> Option<f64> {
+    let known = |label: u16| truth.planes.iter().find(|plane| plane.label == label).map(|plane| plane.plane);
+    let found = |label: u16| detection.planes.get(usize::from(label) - 1)?.metric.map(|metric| metric.plane);
+    let mut errors: Vec<f64> =
+        plane_errors(&evops(table).matched, known, found).iter().map(|(_, error)| error.normal_deg).collect();
+    errors.sort_by(f64::total_cmp);
+    errors.get(errors.len() / 2).copied()
+}
