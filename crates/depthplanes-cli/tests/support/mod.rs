@@ -106,3 +106,18 @@ pub fn two_planes(near: u16) -> Vec<u8> {
     bytes.extend((0..32 * 24).flat_map(|at| value(at).to_be_bytes()));
     bytes
 }
+
+/// The folder of recorded maps: `DEPTHPLANES_DATA`, or `shared/data` beside a folder above this crate.
+/// Without it the calling test is skipped, but for CI, where it fails.
+pub fn data() -> Option<PathBuf> {
+    let beside = || {
+        let above = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().skip(1);
+        above.map(|folder| folder.join("shared/data")).find(|data| data.join("MANIFEST.tsv").is_file())
+    };
+    let found = std::env::var_os("DEPTHPLANES_DATA").map(PathBuf::from).or_else(beside);
+    if found.is_none() {
+        assert!(std::env::var("CI").as_deref() != Ok("true"), "there is no data: set DEPTHPLANES_DATA");
+        println!("skipped: there is no data, set DEPTHPLANES_DATA");
+    }
+    found
+}

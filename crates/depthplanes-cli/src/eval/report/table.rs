@@ -122,7 +122,7 @@ pub(super) fn csv(rows: &[&Row]) -> String {
         let named = [&key.dataset, &key.map, &key.method, &key.parameters, &key.version, &row.machine, &row.date];
         let mut cells: Vec<String> = named.into_iter().map(|cell| quoted(cell)).collect();
         cells.extend([row.jobs, key.repeat, row.size[0], row.size[1]].map(|number| number.to_string()));
-        cells.push(least(row));
+        cells.push(super::found(row).map_or(String::new(), |found| found.least_ms.to_string()));
         let value = |column: &Column| super::found(row).and_then(|found| (column.value)(row, found));
         cells.extend(COLUMNS.iter().map(|column| value(column).map_or(String::new(), |value| value.to_string())));
         text += &(cells.join(",") + "\n");

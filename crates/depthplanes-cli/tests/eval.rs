@@ -1,0 +1,117 @@
+//! `depthplanes eval`: methods over sets of maps, and the report.
+
+mod support;
+
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::time::{Duration, Instant};
+use support::Bench;
+
+/// The records of an evaluation, each a line.
+fn rows(bench: &Bench, file: &str) -> Vec<Value> {
+    let text = String::from_utf8(bench.read(file)).unwrap();
+    text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+#[test]
+fn a_report_is_one_page_that_needs_nothing_else() {
+    let bench = Bench::new("eval_report");
+    let out = bench
+        .run(&["eval", "scene:planes3:seed=1-2,size=160x120", "--methods", "planar,ngaf", "--report", "report"])
+        .ok();
+    assert!(out.starts_with("scenes\nmethod"), "{out}");
+    let page = String::from_utf8(bench.read("report/report.html")).unwrap();
+    for part in ["<table>", "<svg", "data:image/png;base64,", "planar", "ngaf", "truth"] {
+        assert!(page.contains(part), "no {part}");
+    }
+    // Nothing is fetched: the only addresses are names of vocabularies.
+    for (at, _) in page.match_indices("http") {
+        assert!(page[at..].starts_with("http://www.w3.org/"), "{}", &page[at..at + 60]);
+    }
+    let markdown = String::from_utf8(bench.read("report/report.md")).unwrap();
+    assert!(markdown.contains("## scenes\n\n| method | maps |"), "{markdown}");
+    let all = rows(&bench, "report/rows.jsonl");
+    assert_eq!(all.len(), 4);
+    let found = &all[0]["outcome"]["found"];
+    let f_score = found["scores"]["evops.f_score"].as_f64().unwrap();
+    assert!(
+        all[0]["method"] == "planar" && f_score == 1.0 && found["normal_error_deg"].as_f64().unwrap() < 0.1,
+        "{found}"
+    );
+    let csv = String::from_utf8(bench.read("report/rows.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 5);
+    assert!(bench.folder.join("report").join(found["labels"].as_str().unwrap()).is_file());
+}
+
+#[test]
+fn a_killed_evaluation_goes_on_and_redoes_no_row() {
+    let bench = Bench::new("eval_killed");
+    let words = ["eval", "scene:room:seed=1-12,size=320x240", "--methods", "planar,ngaf", "--report", "report"];
+    let mut child = bench.command().args(words).stdout(std::process::Stdio::null()).spawn().unwrap();
+    let start = Instant::now();
+    let kept = loop {
+        let text = std::fs::read_to_string(bench.folder.join("report/rows.jsonl")).unwrap_or_default();
+        if text.lines().count() >= 3 || start.elapsed() > Duration::from_secs(60) {
+            child.kill().unwrap(); // SIGKILL: nothing is tidied up
+            child.wait().unwrap();
+            break std::fs::read_to_string(bench.folder.join("report/rows.jsonl")).unwrap();
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    };
+    let whole = &kept[..kept.rfind('\n').map_or(0, |end| end + 1)];
+    assert!(whole.lines().count() >= 3, "{kept}");
+    bench.run(&words).ok();
+    let after = String::from_utf8(bench.read("report/rows.jsonl")).unwrap();
+    assert!(after.starts_with(whole), "a row was made again");
+    let all = rows(&bench, "report/rows.jsonl");
+    let keys: BTreeSet<String> = all.iter().map(|row| format!("{} {}", row["map"], row["method"])).collect();
+    assert_eq!((all.len(), keys.len()), (24, 24));
+    let pages =
+        || ["report.html", "report.md", "rows.csv", "rows.json"].map(|name| bench.read(&format!("report/{name}")));
+    let before = pages();
+    let again = bench.run(&words);
+    assert!(again.err.contains("24 of 24 results are there already"), "{again:?}");
+    assert!(pages() == before, "the report of the same rows is another");
+}
+
+#[test]
+fn what_is_wrong_with_a_set_is_said() {
+    let bench = Bench::new("eval_wrong");
+    std::fs::create_dir_all(bench.folder.join("empty")).unwrap();
+    let says = |words: &[&str], part: &str| {
+        let err = bench.run(&[&["eval"], words, &["--report", "report"]].concat()).fails(2);
+        assert!(err.contains(part), "{words:?}: {err}");
+    };
+    says(&["nowhere"], "there are middlebury, kinect, segcomp-abw");
+    says(&["evops"], "Give evops=DIR, or --data DIR with a folder `gt_evops` in it");
+    says(&["evops=absent"], "no such folder; it needs NAME.depth.png");
+    says(&["evops=empty"], "no map of this set is in it; it needs NAME.depth.png");
+    says(&["scene:planes3:seed=9-2"], "seed=9-2 is no range");
+    says(&["scene:nothing"], "nothing");
+    bench.write("empty/a.depth.png", b"");
+    says(&["evops=empty"], "its truth empty/a.labels.png is not there");
+    assert!(!bench.folder.join("report/report.html").exists());
+}
+
+#[test]
+fn every_set_of_recorded_maps_is_read() {
+    let Some(data) = support::data() else { return };
+    let bench = Bench::new("eval_recorded");
+    let data = data.to_str().unwrap();
+    let sets = ["middlebury", "kinect", "segcomp-abw", "nyu-dpd", "synpeb", "sr4000", "evops"];
+    let words =
+        [&["eval"], &sets[..], &["--data", data, "--report", "report", "--repeat", "1", "--jobs", "2"]].concat();
+    bench.run(&words).ok();
+    let all = rows(&bench, "report/rows.jsonl");
+    let scored = |set: &str| {
+        let of_set: Vec<&Value> = all.iter().filter(|row| row["dataset"] == set).collect();
+        let correct = |row: &&Value| row["outcome"]["found"]["scores"]["segcomp.correct"].as_f64();
+        (of_set.len(), of_set.iter().filter_map(correct).sum::<f64>())
+    };
+    assert_eq!((scored("middlebury").1, scored("segcomp-abw").0), (25.0, 10));
+    for set in sets {
+        assert!(scored(set).0 > 0, "{set}");
+    }
+    assert!(scored("segcomp-abw").1 >= 150.0, "{:?}", scored("segcomp-abw"));
+    println!("{:?}", sets.map(|set| (set, scored(set))));
+}
