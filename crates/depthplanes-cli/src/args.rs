@@ -26,6 +26,7 @@ pub(crate) enum Command {
     Noise { inputs: Vec<OsString>, reading: Box<Reading>, json: bool },
     Score(Score),
     Eval(Eval),
+    Compare(Box<Compare>),
     Datasets,
     Demo { out_dir: PathBuf },
     Methods,
@@ -95,6 +96,20 @@ pub(crate) struct Eval {
     pub(crate) threads: usize,
 }
 
+/// `depthplanes compare`.
+pub(crate) struct Compare {
+    pub(crate) input: OsString,
+    pub(crate) reading: Reading,
+    pub(crate) methods: Vec<String>,
+    /// Parameters given, by flag; each goes to the methods that have it.
+    pub(crate) parameters: Vec<(&'static str, f64)>,
+    pub(crate) truth: Option<PathBuf>,
+    pub(crate) truth_from: u16,
+    pub(crate) picture: Option<PathBuf>,
+    pub(crate) repeat: usize,
+    pub(crate) threads: usize,
+}
+
 /// Parses the command line; on wrong use, or where help is asked for, it prints and exits.
 pub(crate) fn parse() -> Command {
     let matches = program().get_matches();
@@ -114,6 +129,7 @@ pub(crate) fn parse() -> Command {
         },
         "score" => Command::Score(score(matches)),
         "eval" => Command::Eval(eval(matches)),
+        "compare" => Command::Compare(Box::new(compare(matches))),
         "datasets" => Command::Datasets,
         "demo" => Command::Demo { out_dir: path(matches, "out-dir").expect("it has a default") },
         "methods" => Command::Methods,
@@ -173,6 +189,7 @@ fn program() -> clap::Command {
             inspect_command(),
             noise_command(),
             score_command(),
+            compare_command(),
             eval_command(),
             clap::Command::new("datasets")
                 .about("Lists the sets of maps that `eval` knows, and how their folders have to look"),
@@ -312,8 +329,33 @@ fn score_command() -> clap::Command {
         ])
 }
 
-fn eval_command() -> clap::Command {
+/// Some methods, all of them or one by default.
+fn methods_flag(default: impl IntoIterator<Item = &'static str>) -> Arg {
     let names = METHODS.iter().map(|method| method.name);
+    let flag = Arg::new("methods").long("methods").value_name("A,B,..").value_delimiter(',');
+    flag.value_parser(PossibleValuesParser::new(names)).default_values(default).help("Methods to run")
+}
+
+fn compare_command() -> clap::Command {
+    let input = Arg::new("input").value_name("INPUT").required(true).value_parser(value_parser!(OsString));
+    clap::Command::new("compare")
+        .about("Runs several methods on one map: a table, and a picture of all side by side")
+        .after_help(EXIT_CODES)
+        .arg(input.help("A file, - for standard input, or scene:SPEC for a made-up scene, which knows its truth"))
+        .args(flags::reading())
+        .arg(methods_flag(METHODS.iter().map(|method| method.name)))
+        .args(flags::method_parameters())
+        .args([
+            flags::path("picture", "FILE").help("Write the picture of all side by side (.png)"),
+            flags::path("truth", "FILE")
+                .help("Label image of the truth: adds scores to the table, and the truth to the picture"),
+            flags::label("truth-from", "LABEL").default_value("1").help("The lowest truth label that is a plane"),
+            flags::count("repeat", "N").default_value("5").help("Timed runs of each method, after a warm-up"),
+            flags::count("threads", "N").default_value("1").help("Threads for each map"),
+        ])
+}
+
+fn eval_command() -> clap::Command {
     clap::Command::new("eval")
         .about("Runs methods over sets of maps and writes a report; started again, it goes on where it was interrupted")
         .after_help(EXIT_CODES)
@@ -322,13 +364,7 @@ fn eval_command() -> clap::Command {
                 "A set in the folder of sets, NAME=DIR, or scene:SPEC (seed=1-20 for twenty seeds); \
                  `depthplanes datasets` lists them",
             ),
-            Arg::new("methods")
-                .long("methods")
-                .value_name("A,B,..")
-                .value_delimiter(',')
-                .value_parser(PossibleValuesParser::new(names))
-                .default_value(methods::default().name)
-                .help("Methods to run"),
+            methods_flag([methods::default().name]),
             flags::path("data", "DIR").help("Folder of sets"),
             flags::path("report", "DIR").required(true).help("Folder of the report and of what is kept to go on from"),
             flags::count("repeat", "N")
@@ -375,6 +411,21 @@ fn detect(matches: &ArgMatches) -> Detect {
         rows: count("rows"),
         repeat: matches.get_one("repeat").copied().unwrap_or(0),
         jobs: count("jobs"),
+        threads: count("threads"),
+    }
+}
+
+fn compare(matches: &ArgMatches) -> Compare {
+    let count = |name| *matches.get_one::<usize>(name).expect("it has a default");
+    Compare {
+        input: matches.get_one::<OsString>("input").cloned().expect("it is required"),
+        reading: Reading::from_matches(matches),
+        methods: matches.get_many::<String>("methods").expect("it has a default").cloned().collect(),
+        parameters: flags::parameters_given(matches),
+        truth: path(matches, "truth"),
+        truth_from: *matches.get_one("truth-from").expect("it has a default"),
+        picture: path(matches, "picture"),
+        repeat: count("repeat"),
         threads: count("threads"),
     }
 }

@@ -1,7 +1,7 @@
 //! One map through the pipeline: which method with which parameters, and how long it takes.
 
 use crate::failure::{Failure, Outcome};
-use depthplanes::methods::{METHODS, MethodInfo};
+use depthplanes::methods::{self, METHODS, MethodInfo};
 use depthplanes::outline::{Outliner, Outlines};
 use depthplanes::{AnyView, Coplanar, Detection, Detector, Sensor};
 use depthplanes_io::Frame;
@@ -43,6 +43,23 @@ impl Recipe {
         }
         method.with(given)?;
         Ok(Recipe { method, values, threads, coplanar: None, outlines: None, curved: false })
+    }
+
+    /// Several methods by name, each with those of the parameters given that it has.
+    ///
+    /// # Errors
+    /// An unknown method, a parameter that none of them has, a value out of range.
+    pub(crate) fn several(names: &[String], given: &[(&'static str, f64)], threads: usize) -> Outcome<Vec<Self>> {
+        let all = names.iter().map(|name| Ok(methods::find(name)?)).collect::<Outcome<Vec<_>>>()?;
+        let has = |method: &MethodInfo, name: &str| method.params.iter().any(|param| param.name == name);
+        if let Some((name, _)) = given.iter().find(|(name, _)| !all.iter().any(|method| has(method, name))) {
+            return Err(Failure::request(format!("none of {} has a parameter `{name}`", names.join(", "))));
+        }
+        let recipe = |method: &'static MethodInfo| {
+            let own: Vec<_> = given.iter().copied().filter(|(name, _)| has(method, name)).collect();
+            Recipe::new(method, &own, threads)
+        };
+        all.into_iter().map(recipe).collect()
     }
 
     /// With the planes' outlines, simplified to within so many pixels.

@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+mod compare;
 mod completions;
 mod demo;
 mod detect;
@@ -23,6 +24,7 @@ pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
         Command::Inspect { inputs, reading, json } => inspect::run(inputs, reading, *json, out),
         Command::Noise { inputs, reading, json } => noise::run(inputs, reading, *json, out),
         Command::Score(wanted) => score::run(wanted, out),
+        Command::Compare(wanted) => compare::run(wanted, out),
         Command::Eval(wanted) => crate::eval::run(wanted, out),
         Command::Datasets => lists::datasets(out),
         Command::Demo { out_dir } => demo::run(out_dir, out),

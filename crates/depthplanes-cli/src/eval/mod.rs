@@ -14,7 +14,6 @@ use crate::failure::{Failure, Outcome, note};
 use crate::pool;
 use crate::run::Recipe;
 use datasets::Item;
-use depthplanes::methods;
 use indicatif::{ProgressBar, ProgressStyle};
 use rows::{Key, Row, Store};
 use std::io::Write;
@@ -25,7 +24,7 @@ use task::Task;
 const LABELS: &str = "labels";
 
 pub(crate) fn run(wanted: &Eval, out: &mut dyn Write) -> Outcome {
-    let recipes = wanted.methods.iter().map(|name| recipe(name, wanted)).collect::<Outcome<Vec<_>>>()?;
+    let recipes = Recipe::several(&wanted.methods, &wanted.parameters, wanted.threads)?;
     let items = items(&wanted.datasets, wanted.data.as_deref())?;
     let folder = &wanted.report;
     crate::commands::make_folder(&folder.join(LABELS))?;
@@ -52,21 +51,10 @@ pub(crate) fn run(wanted: &Eval, out: &mut dyn Write) -> Outcome {
     Ok(())
 }
 
-/// A method by name, with those of the parameters given that it has.
-///
-/// # Errors
-/// An unknown method, a value out of range.
-fn recipe(name: &str, wanted: &Eval) -> Outcome<Recipe> {
-    let method = methods::find(name)?;
-    let has = |flag: &str| method.params.iter().any(|param| param.name == flag);
-    let given: Vec<_> = wanted.parameters.iter().copied().filter(|(flag, _)| has(flag)).collect();
-    Recipe::new(method, &given, wanted.threads)
-}
-
 /// The maps of all sets.
 ///
 /// # Errors
-/// A set that is unknown, not there or without maps; a parameter that no method has is found out by the caller.
+/// A set that is unknown, not there or without maps.
 fn items(words: &[String], data: Option<&Path>) -> Outcome<Vec<Item>> {
     let mut items = Vec::new();
     for word in words {

@@ -36,7 +36,7 @@ pub use labels::{npy as labels_npy, png as labels_png};
 pub use picture::grey16_png;
 pub use planes::{CSV_COLUMNS, document as json_document, line as json_line};
 pub use record::SCHEMA;
-pub use tinted::tinted_png;
+pub use tinted::{Tile, side_by_side, tinted_png};
 
 /// All outputs.
 pub const OUTPUTS: &[Output] =
