@@ -15,6 +15,7 @@ use crate::pool;
 use crate::run::Recipe;
 use datasets::Item;
 use indicatif::{ProgressBar, ProgressStyle};
+use report::Section;
 use rows::{Key, Row, Store};
 use std::io::Write;
 use std::path::Path;
@@ -23,27 +24,39 @@ use task::Task;
 /// Folder of the label images within the report's.
 const LABELS: &str = "labels";
 
+/// A method with parameters, and what it is called in the report.
+struct Entry {
+    label: String,
+    recipe: Recipe,
+}
+
+/// How often and how much at a time.
+#[derive(Clone, Copy)]
+struct Pace {
+    /// Timed runs after a warm-up.
+    repeat: usize,
+    /// Maps at the same time.
+    jobs: usize,
+}
+
 pub(crate) fn run(wanted: &Eval, out: &mut dyn Write) -> Outcome {
     let recipes = Recipe::several(&wanted.methods, &wanted.parameters, wanted.threads)?;
+    let entry = |recipe: Recipe| Entry { label: recipe.method.name.into(), recipe };
+    let entries: Vec<Entry> = recipes.into_iter().map(entry).collect();
     let items = items(&wanted.datasets, wanted.data.as_deref())?;
-    let folder = &wanted.report;
-    crate::commands::make_folder(&folder.join(LABELS))?;
-    let mut store = Store::open(&folder.join("rows.jsonl"))?;
-    let tasks = tasks(&items, &recipes, wanted.repeat);
-    let open: Vec<&Task<'_>> = tasks.iter().filter(|task| !task.is_done(&store, folder)).collect();
-    if open.len() < tasks.len() {
-        note(&format!(
-            "{}: {} of {} results are there already",
-            folder.display(),
-            tasks.len() - open.len(),
-            tasks.len()
-        ));
-    }
-    work(&open, wanted.jobs, folder, &mut store)?;
+    let pace = Pace { repeat: wanted.repeat, jobs: wanted.jobs };
+    let store = make(&tasks(&items, &entries, pace.repeat), pace, &wanted.report)?;
+    let tasks = tasks(&items, &entries, pace.repeat);
     let rows: Vec<&Row> = tasks.iter().filter_map(|task| store.get(&task.key)).collect();
-    let written = report::write(folder, &rows, &items)?;
+    let sections = report::by_dataset(&wanted.report, &rows, &items)?;
+    finish("Evaluation", &wanted.report, &rows, &sections, out)
+}
+
+/// Writes the report, and its tables for the terminal.
+fn finish(title: &str, folder: &Path, rows: &[&Row], sections: &[Section], out: &mut dyn Write) -> Outcome {
+    let written = report::write(title, folder, rows, sections)?;
+    write!(out, "{}", report::summary(sections))?;
     let refused = rows.iter().filter(|row| matches!(row.outcome, rows::Made::Refused(_))).count();
-    write!(out, "{}", report::summary(&rows))?;
     if refused > 0 {
         note(&format!("{refused} of {} results are refusals; the report says why", rows.len()));
     }
@@ -64,36 +77,50 @@ fn items(words: &[String], data: Option<&Path>) -> Outcome<Vec<Item>> {
 }
 
 /// Every map by every method, the methods of a map together.
-fn tasks<'a>(items: &'a [Item], recipes: &'a [Recipe], repeat: usize) -> Vec<Task<'a>> {
-    let task = |(item, recipe): (&'a Item, &'a Recipe)| {
+fn tasks<'a>(items: &'a [Item], entries: &'a [Entry], repeat: usize) -> Vec<Task<'a>> {
+    let task = |(item, entry): (&'a Item, &'a Entry)| {
         let key = Key {
             dataset: item.dataset.clone(),
             map: item.name.clone(),
-            method: recipe.method.name.into(),
-            parameters: recipe.written(),
+            label: entry.label.clone(),
+            method: entry.recipe.method.name.into(),
+            parameters: entry.recipe.written(),
             version: env!("CARGO_PKG_VERSION").into(),
             repeat,
         };
-        Task { item, recipe, key }
+        Task { item, recipe: &entry.recipe, key }
     };
-    items.iter().flat_map(|item| recipes.iter().map(move |recipe| (item, recipe))).map(task).collect()
+    items.iter().flat_map(|item| entries.iter().map(move |entry| (item, entry))).map(task).collect()
 }
 
-/// Does the tasks that are open; each row is kept as soon as it is made.
-fn work(open: &[&Task<'_>], jobs: usize, folder: &Path, store: &mut Store) -> Outcome {
+/// Does the tasks that have no row yet; each row is kept as soon as it is made.
+///
+/// # Errors
+/// A folder that cannot be written to, a map that cannot be read.
+fn make(tasks: &[Task<'_>], pace: Pace, folder: &Path) -> Outcome<Store> {
+    crate::commands::make_folder(&folder.join(LABELS))?;
+    let mut store = Store::open(&folder.join("rows.jsonl"))?;
+    let open: Vec<&Task<'_>> = tasks.iter().filter(|task| !task.is_done(&store, folder)).collect();
+    if open.len() < tasks.len() {
+        note(&format!(
+            "{}: {} of {} results are there already",
+            folder.display(),
+            tasks.len() - open.len(),
+            tasks.len()
+        ));
+    }
     let bar = ProgressBar::new(open.len() as u64);
-    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {eta} {msg}").expect("a fixed template");
-    bar.set_style(style);
+    bar.set_style(ProgressStyle::with_template("{bar:30} {pos}/{len} {eta} {msg}").expect("a fixed template"));
     let machine = machine::name();
     let worker = || {
-        let machine = &machine;
-        move |at: usize| open[at].run(folder, machine, jobs)
+        let (machine, open) = (&machine, &open);
+        move |at: usize| open[at].run(folder, machine, pace.jobs)
     };
-    pool::in_order(open.len(), jobs, worker, |at, row| {
-        bar.set_message(format!("{} {}", open[at].key.map, open[at].key.method));
+    pool::in_order(open.len(), pace.jobs, worker, |at, row| {
+        bar.set_message(format!("{} {}", open[at].key.map, open[at].key.label));
         bar.inc(1);
         store.add(row?)
     })?;
     bar.finish_and_clear();
-    Ok::<(), Failure>(())
+    Ok::<Store, Failure>(store)
 }

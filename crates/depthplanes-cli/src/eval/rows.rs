@@ -12,6 +12,8 @@ use std::path::Path;
 pub(crate) struct Key {
     pub(crate) dataset: String,
     pub(crate) map: String,
+    /// What the method with these parameters is called in the report.
+    pub(crate) label: String,
     pub(crate) method: String,
     /// Every parameter with its value, as they are written.
     pub(crate) parameters: String,
@@ -119,8 +121,8 @@ mod tests {
     use super::*;
 
     fn row(map: &str) -> Row {
-        let [dataset, method, version] = ["d", "m", "v"].map(str::to_string);
-        let key = Key { dataset, map: map.into(), method, parameters: String::new(), version, repeat: 1 };
+        let [dataset, label, method, version] = ["d", "l", "m", "v"].map(str::to_string);
+        let key = Key { dataset, map: map.into(), label, method, parameters: String::new(), version, repeat: 1 };
         let outcome = Made::Refused("no camera".into());
         Row { key, machine: String::new(), date: String::new(), jobs: 1, size: [4, 3], valid_pixels: 12, outcome }
     }

@@ -1,7 +1,8 @@
 //! The report as one page of HTML that needs nothing else.
 
-use super::Page;
+use super::plots::Plot;
 use super::table::Table;
+use super::{Page, Section};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
@@ -13,30 +14,35 @@ table { border-collapse: collapse; font-size: 13px; font-variant-numeric: tabula
 th, td { padding: .2rem .5rem; text-align: right; white-space: nowrap; } th { border-bottom: 2px solid #999; }
 th:first-child, td:first-child { text-align: left; } tbody tr:nth-child(odd) { background: #f5f6f8; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: .15rem 1rem; } dt { color: #555; } dd { margin: 0; }
-.plots { display: flex; flex-wrap: wrap; gap: 1.2rem; } figure { margin: 0; } figcaption { color: #444; font-size: .85rem; }
+.plots { margin-top: 1rem; display: flex; flex-wrap: wrap; gap: 1.2rem; } figure { margin: 0; } figcaption { color: #444; font-size: .85rem; max-width: 570px; } p { max-width: 46rem; }
 
 .strip { display: flex; flex-wrap: wrap; gap: .5rem; } .strip img { display: block; width: 220px; height: auto; }
 ";
 
-pub(super) fn page(page: &Page) -> String {
-    let facts: String =
-        page.facts.iter().map(|[what, value]| format!("<dt>{}</dt><dd>{}</dd>\n", safe(what), safe(value))).collect();
-    let plots: String = page
-        .plots
-        .iter()
-        .map(|plot| format!("<figure>{}<figcaption>{}</figcaption></figure>\n", plot.svg, safe(&plot.caption)))
-        .collect();
-    let tables: String = page.tables.iter().map(table).collect();
-    let strips: String = page.strips.iter().map(strip).collect();
+pub(super) fn page(page: &Page<'_>) -> String {
+    let fact = |[what, value]: &[String; 2]| format!("<dt>{}</dt><dd>{}</dd>\n", safe(what), safe(value));
+    let facts: String = page.facts.iter().map(fact).collect();
+    let sections: String = page.sections.iter().map(section).collect();
     let refusals: String = page.refusals.iter().map(|refusal| format!("<li>{}</li>\n", safe(refusal))).collect();
     let refusals = if refusals.is_empty() { refusals } else { format!("<h2>Refusals</h2>\n<ul>{refusals}</ul>\n") };
+    let title = safe(page.title);
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>depthplanes: evaluation</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>Evaluation</h1>\n\
-         <dl>{facts}</dl>\n{tables}<h2>Plots</h2>\n<div class=\"plots\">{plots}</div>\n\
-         <h2>Pictures</h2>\n{strips}{refusals}</body>\n</html>\n"
+         <title>depthplanes: {title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n\
+         <dl>{facts}</dl>\n{sections}{refusals}</body>\n</html>\n"
     )
+}
+
+fn section(section: &Section) -> String {
+    let Section { title, text, tables, plots, strips } = section;
+    let text = if text.is_empty() { String::new() } else { format!("<p>{}</p>\n", safe(text)) };
+    let tables: String = tables.iter().map(table).collect();
+    let figure =
+        |plot: &Plot| format!("<figure>{}<figcaption>{}</figcaption></figure>\n", plot.svg, safe(&plot.caption));
+    let plots: String = plots.iter().map(figure).collect();
+    let strips: String = strips.iter().map(strip).collect();
+    format!("<h2>{}</h2>\n{text}{tables}<div class=\"plots\">{plots}</div>\n{strips}", safe(title))
 }
 
 fn table(table: &Table) -> String {
@@ -44,11 +50,7 @@ fn table(table: &Table) -> String {
         cells.iter().map(|cell| format!("<{tag}>{}</{tag}>", safe(cell))).collect()
     };
     let rows: String = table.rows.iter().map(|row| format!("<tr>{}</tr>\n", cells("td", row))).collect();
-    format!(
-        "<h2>{}</h2>\n<table><thead><tr>{}</tr></thead>\n<tbody>{rows}</tbody></table>\n",
-        safe(&table.title),
-        cells("th", &table.head)
-    )
+    format!("<table><thead><tr>{}</tr></thead>\n<tbody>{rows}</tbody></table>\n", cells("th", &table.head))
 }
 
 fn strip(strip: &super::strips::Strip) -> String {

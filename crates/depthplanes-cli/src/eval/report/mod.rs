@@ -3,29 +3,38 @@
 //! In: the rows, and the maps for their pictures. Out: files, each written whole.
 
 mod html;
-mod plots;
+pub(super) mod plots;
 mod strips;
-mod table;
+pub(super) mod table;
 
 use super::datasets::Item;
 use super::rows::{Found, Made, Row};
 use crate::failure::Outcome;
 use depthplanes_io::outputs::write_file;
+use plots::Plot;
 use std::path::Path;
+use strips::Strip;
 use table::Table;
+
+pub(super) use strips::of_maps;
+
+/// A part of a report.
+#[derive(Default)]
+pub(super) struct Section {
+    pub(super) title: String,
+    /// What it is about; empty for nothing.
+    pub(super) text: String,
+    pub(super) tables: Vec<Table>,
+    pub(super) plots: Vec<Plot>,
+    pub(super) strips: Vec<Strip>,
+}
 
 /// Writes the report; the names of its files.
 ///
 /// # Errors
-/// A map that cannot be read any more, a disk that refuses.
-pub(super) fn write(folder: &Path, rows: &[&Row], items: &[Item]) -> Outcome<Vec<String>> {
-    let page = Page {
-        facts: facts(rows),
-        tables: table::all(rows),
-        plots: plots::all(rows),
-        strips: strips::all(folder, rows, items)?,
-        refusals: refusals(rows),
-    };
+/// A disk that refuses.
+pub(super) fn write(title: &str, folder: &Path, rows: &[&Row], sections: &[Section]) -> Outcome<Vec<String>> {
+    let page = Page { title, facts: facts(rows), sections, refusals: refusals(rows) };
     let json = serde_json::to_string_pretty(rows).expect("rows are plain values");
     let files = [
         ("report.html", html::page(&page)),
@@ -43,17 +52,37 @@ pub(super) fn write(folder: &Path, rows: &[&Row], items: &[Item]) -> Outcome<Vec
 }
 
 /// The tables, for the terminal.
-pub(super) fn summary(rows: &[&Row]) -> String {
-    table::all(rows).iter().map(Table::text).collect::<Vec<_>>().join("\n")
+pub(super) fn summary(sections: &[Section]) -> String {
+    sections.iter().flat_map(|section| &section.tables).map(|table| table.text() + "\n").collect()
+}
+
+/// A section for all sets together, if there are several, and one for each.
+///
+/// # Errors
+/// A map or a label image that cannot be read any more.
+pub(super) fn by_dataset(folder: &Path, rows: &[&Row], items: &[Item]) -> Outcome<Vec<Section>> {
+    let whole = [plots::accuracy_by_time(rows), plots::time_by_size(rows)].into_iter().flatten().collect();
+    let mut sections = vec![Section { title: "All sets".into(), plots: whole, ..Section::default() }];
+    for dataset in in_order(rows.iter().map(|row| row.key.dataset.as_str())) {
+        let own: Vec<&Row> = rows.iter().copied().filter(|row| row.key.dataset == dataset).collect();
+        let maps: Vec<&Item> = items.iter().filter(|item| item.dataset == dataset).collect();
+        sections.push(Section {
+            title: dataset.clone(),
+            text: String::new(),
+            tables: vec![table::of(&dataset, &own)],
+            plots: [plots::correct_by_tolerance(&own), plots::three_measures(&own)].into_iter().flatten().collect(),
+            strips: of_maps(folder, &own, &maps)?,
+        });
+    }
+    Ok(sections)
 }
 
 /// What is in a report.
-struct Page {
+struct Page<'a> {
+    title: &'a str,
     /// Where, when and how: a heading and a value each.
     facts: Vec<[String; 2]>,
-    tables: Vec<Table>,
-    plots: Vec<plots::Plot>,
-    strips: Vec<strips::Strip>,
+    sections: &'a [Section],
     refusals: Vec<String>,
 }
 
@@ -71,24 +100,17 @@ fn facts(rows: &[&Row]) -> Vec<[String; 2]> {
         ["timed runs a map".into(), all(&|row| row.key.repeat.to_string())],
         ["maps at the same time".into(), all(&|row| row.jobs.to_string())],
     ];
-    for method in methods(rows) {
-        let parameters = |row: &&&Row| row.key.method == method;
-        let mut values: Vec<&str> = rows.iter().filter(parameters).map(|row| row.key.parameters.as_str()).collect();
-        values.sort_unstable();
-        values.dedup();
-        facts.push([method, values.join(" / ")]);
+    for label in labels(rows) {
+        let own = rows.iter().filter(|row| row.key.label == label);
+        let values = in_order(own.map(|row| row.key.parameters.as_str()));
+        facts.push([label, values.join(" / ")]);
     }
     facts
 }
 
-/// Names of the methods in the order in which they were asked for.
-fn methods(rows: &[&Row]) -> Vec<String> {
-    in_order(rows.iter().map(|row| row.key.method.as_str()))
-}
-
-/// Names of the sets in that order.
-fn datasets(rows: &[&Row]) -> Vec<String> {
-    in_order(rows.iter().map(|row| row.key.dataset.as_str()))
+/// What the methods are called, in the order in which they were asked for.
+fn labels(rows: &[&Row]) -> Vec<String> {
+    in_order(rows.iter().map(|row| row.key.label.as_str()))
 }
 
 fn in_order<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
@@ -108,10 +130,10 @@ fn found(row: &Row) -> Option<&Found> {
     }
 }
 
-/// Of a set by a method.
-fn of<'a>(rows: &[&'a Row], dataset: &str, method: &str) -> Vec<(&'a Row, &'a Found)> {
-    let is_wanted = |row: &&&Row| row.key.dataset == dataset && row.key.method == method;
-    rows.iter().filter(is_wanted).filter_map(|row| Some((*row, found(row)?))).collect()
+/// What a method found.
+fn by<'a>(rows: &[&'a Row], label: &str) -> Vec<(&'a Row, &'a Found)> {
+    let own = rows.iter().filter(|row| row.key.label == label);
+    own.filter_map(|row| Some((*row, found(row)?))).collect()
 }
 
 /// The mean of those that have a value.
@@ -125,18 +147,29 @@ fn per_megapixel(row: &Row, found: &Found) -> f64 {
     found.median_ms / (row.size[0] * row.size[1]) as f64 * 1e6
 }
 
+/// Share of the valid pixels that have a plane.
+fn share(row: &Row, found: &Found) -> f64 {
+    found.labelled_pixels as f64 / row.valid_pixels.max(1) as f64
+}
+
 fn refusals(rows: &[&Row]) -> Vec<String> {
     let refusal = |row: &&Row| match &row.outcome {
-        Made::Refused(why) => Some(format!("{} on {}: {why}", row.key.method, row.key.map)),
+        Made::Refused(why) => Some(format!("{} on {}: {why}", row.key.label, row.key.map)),
         Made::Found(_) => None,
     };
     rows.iter().filter_map(refusal).collect()
 }
 
-fn markdown(page: &Page) -> String {
-    let mut text = String::from("# Evaluation\n\n");
+fn markdown(page: &Page<'_>) -> String {
+    let mut text = format!("# {}\n\n", page.title);
     page.facts.iter().for_each(|[what, value]| text += &format!("- {what}: {value}\n"));
-    page.tables.iter().for_each(|table| text += &format!("\n## {}\n\n{}", table.title, table.markdown()));
+    for section in page.sections.iter().filter(|section| !section.tables.is_empty()) {
+        text += &format!("\n## {}\n\n", section.title);
+        if !section.text.is_empty() {
+            text += &format!("{}\n\n", section.text);
+        }
+        section.tables.iter().for_each(|table| text += &table.markdown());
+    }
     if !page.refusals.is_empty() {
         text += "\n## Refusals\n\n";
         page.refusals.iter().for_each(|refusal| text += &format!("- {refusal}\n"));

@@ -1,11 +1,11 @@
 //! The plots of a report, as SVG.
 
-use super::super::rows::Row;
-use super::{datasets, mean, methods, of, per_megapixel};
+use super::super::rows::{Found, Row};
+use super::{by, in_order, labels, mean, per_megapixel, share};
 use kuva::prelude::*;
 
 /// A plot with what it shows.
-pub(super) struct Plot {
+pub(in super::super) struct Plot {
     pub(super) caption: String,
     pub(super) svg: String,
 }
@@ -22,105 +22,107 @@ fn colour(at: usize) -> &'static str {
     COLOURS[at % COLOURS.len()]
 }
 
-/// All plots for which there are numbers.
-pub(super) fn all(rows: &[&Row]) -> Vec<Plot> {
-    let mut plots = Vec::new();
-    plots.extend(accuracy_by_time(rows));
-    plots.extend(datasets(rows).iter().filter_map(|dataset| correct_by_tolerance(rows, dataset)));
-    plots.extend(time_by_size(rows));
-    plots.extend(datasets(rows).iter().filter_map(|dataset| three_measures(rows, dataset)));
-    plots
-}
-
 /// A point for each method and set: how long, how good.
-fn accuracy_by_time(rows: &[&Row]) -> Option<Plot> {
+pub(in super::super) fn accuracy_by_time(rows: &[&Row]) -> Option<Plot> {
     let mut plots: Vec<kuva::prelude::Plot> = Vec::new();
-    for (at, method) in methods(rows).iter().enumerate() {
-        let point = |dataset: &String| {
-            let found = of(rows, dataset, method);
-            let time = mean(found.iter().map(|(row, found)| Some(per_megapixel(row, found))))?;
-            let score = mean(found.iter().map(|(_, found)| found.scores.get("evops.f_score").copied()))?;
+    for (at, label) in labels(rows).iter().enumerate() {
+        let own = by(rows, label);
+        let point = |dataset: String| {
+            let of_set = || own.iter().filter(|(row, _)| row.key.dataset == dataset);
+            let time = mean(of_set().map(|(row, found)| Some(per_megapixel(row, found))))?;
+            let score = mean(of_set().map(|(_, found)| found.scores.get("evops.f_score").copied()))?;
             Some((time, score))
         };
-        let points: Vec<(f64, f64)> = datasets(rows).iter().filter_map(point).collect();
+        let sets = in_order(own.iter().map(|(row, _)| row.key.dataset.as_str()));
+        let points: Vec<(f64, f64)> = sets.into_iter().filter_map(point).collect();
         if !points.is_empty() {
             let scatter = ScatterPlot::new().with_data(points).with_color(colour(at)).with_size(5.0);
-            plots.push(scatter.with_legend(method.clone()).into());
+            plots.push(scatter.with_legend(label.clone()).into());
         }
     }
     let caption = "F (EVOPS, IoU 0.75) against time for a million pixels: a point for each set with truth";
-    draw(plots, caption, ["ms for a megapixel", "F"], |layout| {
-        layout.with_log_x().with_y_axis_min(0.0).with_y_axis_max(1.0)
-    })
+    draw(plots, caption, ["ms for a megapixel", "F"], |layout| from_0_to_1(layout.with_log_x()))
 }
 
 /// Share of the truth planes found, by the tolerance.
-fn correct_by_tolerance(rows: &[&Row], dataset: &str) -> Option<Plot> {
+pub(in super::super) fn correct_by_tolerance(rows: &[&Row]) -> Option<Plot> {
     let mut plots: Vec<kuva::prelude::Plot> = Vec::new();
-    for (at, method) in methods(rows).iter().enumerate() {
-        let found = of(rows, dataset, method);
-        let truth: f64 = found.iter().filter_map(|(_, found)| found.scores.get("planes.truth")).sum();
-        let tolerances =
-            found.iter().find(|(_, found)| !found.correct_at.is_empty()).map(|(_, found)| &found.correct_at);
-        let share = |at: usize| {
-            found.iter().filter_map(|(_, found)| found.correct_at.get(at)).map(|(_, n)| *n).sum::<usize>() as f64
-                / truth
-        };
-        let Some(tolerances) = tolerances.filter(|_| truth > 0.0) else { continue };
-        let points: Vec<(f64, f64)> =
-            tolerances.iter().enumerate().map(|(at, (tolerance, _))| (*tolerance, share(at))).collect();
+    for (at, label) in labels(rows).iter().enumerate() {
+        let scored: Vec<_> = by(rows, label).into_iter().filter(|(_, found)| !found.correct_at.is_empty()).collect();
+        let truth: f64 = scored.iter().filter_map(|(_, found)| found.scores.get("planes.truth")).sum();
+        let Some((_, first)) = scored.first().filter(|_| truth > 0.0) else { continue };
+        let correct = |place: usize| scored.iter().map(|(_, found)| found.correct_at[place].1).sum::<usize>() as f64;
+        let points =
+            first.correct_at.iter().enumerate().map(|(place, (tolerance, _))| (*tolerance, correct(place) / truth));
         let line = LinePlot::new().with_data(points).with_color(colour(at)).with_stroke_width(2.0);
-        plots.push(line.with_legend(method.clone()).into());
+        plots.push(line.with_legend(label.clone()).into());
     }
-    let caption = format!("{dataset}: share of the truth's planes that are correct, by the SegComp tolerance");
-    draw(plots, &caption, ["tolerance", "correct"], |layout| layout.with_y_axis_min(0.0).with_y_axis_max(1.0))
+    let caption = "Share of the truth's planes that are correct, by the SegComp tolerance";
+    draw(plots, caption, ["tolerance", "correct"], from_0_to_1)
 }
 
 /// A point for each method and map: how large, how long.
-fn time_by_size(rows: &[&Row]) -> Option<Plot> {
-    let mut plots: Vec<kuva::prelude::Plot> = Vec::new();
-    let megapixels = |row: &Row| (row.size[0] * row.size[1]) as f64 / 1e6;
+pub(in super::super) fn time_by_size(rows: &[&Row]) -> Option<Plot> {
     let first = rows.first().map(|row| row.size)?;
     if rows.iter().all(|row| row.size == first) {
         return None;
     }
-    for (at, method) in methods(rows).iter().enumerate() {
-        let of_method = rows.iter().filter(|row| row.key.method == *method);
-        let points: Vec<(f64, f64)> =
-            of_method.filter_map(|row| Some((megapixels(row), super::found(row)?.median_ms))).collect();
+    let megapixels = |row: &Row| (row.size[0] * row.size[1]) as f64 / 1e6;
+    let scatter = |(at, label): (usize, &String)| {
+        let points = by(rows, label).into_iter().map(|(row, found)| (megapixels(row), found.median_ms));
         let scatter = ScatterPlot::new().with_data(points).with_color(colour(at)).with_size(3.0);
-        plots.push(scatter.with_legend(method.clone()).into());
-    }
-    draw(plots, "Median time by the size of the map: a point for each map", ["megapixels", "ms"], |layout| {
-        layout.with_log_x().with_log_y()
-    })
+        scatter.with_legend(label.clone()).into()
+    };
+    let plots = labels(rows).iter().enumerate().map(scatter).collect();
+    let caption = "Median time by the size of the map: a point for each map";
+    draw(plots, caption, ["megapixels", "ms"], |layout| layout.with_log_x().with_log_y())
 }
 
-/// The paper's three measures side by side, each as a share of the largest (Fig. 15).
-fn three_measures(rows: &[&Row], dataset: &str) -> Option<Plot> {
-    let methods = methods(rows);
-    let means = |value: &dyn Fn(&Row, &super::Found) -> f64| -> Vec<f64> {
-        let of_method = |method: &String| {
-            mean(of(rows, dataset, method).iter().map(|(row, found)| Some(value(row, found)))).unwrap_or(0.0)
-        };
-        methods.iter().map(of_method).collect()
+/// The paper's three measures side by side, two of them as shares of the largest (Fig. 15).
+pub(in super::super) fn three_measures(rows: &[&Row]) -> Option<Plot> {
+    let labels = labels(rows);
+    let means = |value: &dyn Fn(&Row, &Found) -> f64| -> Vec<f64> {
+        let of_method = |label: &String| mean(by(rows, label).iter().map(|(row, found)| Some(value(row, found))));
+        labels.iter().map(|label| of_method(label).unwrap_or(0.0)).collect()
     };
-    let time = means(&|_, found| found.median_ms);
-    let planes = means(&|_, found| found.planes as f64);
-    let share = means(&|row, found| found.labelled_pixels as f64 / row.valid_pixels.max(1) as f64);
-    let of_largest = |values: &[f64], at: usize| {
+    let of_largest = |values: Vec<f64>| -> Vec<f64> {
         let largest = values.iter().copied().fold(0.0, f64::max);
-        if largest > 0.0 { values[at] / largest } else { 0.0 }
+        values.into_iter().map(|value| if largest > 0.0 { value / largest } else { 0.0 }).collect()
     };
+    let time = of_largest(means(&|_, found| found.median_ms));
+    let planes = of_largest(means(&|_, found| found.planes as f64));
+    let share = means(&share);
     let mut bars = BarPlot::new();
-    for (at, method) in methods.iter().enumerate() {
-        let values =
-            [(of_largest(&time, at), COLOURS[1]), (of_largest(&planes, at), COLOURS[0]), (share[at], COLOURS[2])];
-        bars = bars.with_group(method.clone(), values.to_vec());
+    for (at, label) in labels.iter().enumerate() {
+        bars = bars
+            .with_group(label.clone(), vec![(time[at], COLOURS[1]), (planes[at], COLOURS[0]), (share[at], COLOURS[2])]);
     }
     let bars = bars.with_legend(vec!["time / longest", "planes / most", "share of valid pixels"]);
-    let caption = format!("{dataset}: time, number of planes and share of valid pixels, as in the paper's Fig. 15");
-    draw(vec![bars.into()], &caption, ["", "share"], |layout| layout.with_y_axis_min(0.0).with_y_axis_max(1.0))
+    let caption = "Time, number of planes and share of valid pixels, as in the paper's Fig. 15";
+    draw(vec![bars.into()], caption, ["", "share"], |layout| from_0_to_1(layout.with_x_tick_rotate(-30.0)))
+}
+
+/// Number of planes by the smallest plane, a line for each map (Fig. 12 and 13).
+pub(in super::super) fn planes_by_min(rows: &[&Row], caption: &str) -> Option<Plot> {
+    let line = |(at, map): (usize, &String)| {
+        let own = rows.iter().filter(|row| row.key.map == *map);
+        let points: Vec<(f64, f64)> =
+            own.filter_map(|row| Some((parameter(row, "min")?, super::found(row)?.planes as f64))).collect();
+        let line = LinePlot::new().with_data(points).with_color(colour(at)).with_stroke_width(2.0);
+        line.with_legend(map.clone()).into()
+    };
+    let plots = in_order(rows.iter().map(|row| row.key.map.as_str())).iter().enumerate().map(line).collect();
+    draw(plots, caption, ["min, pixels", "planes"], |layout| layout.with_y_axis_min(0.0))
+}
+
+/// The value of a parameter of a row.
+fn parameter(row: &Row, name: &str) -> Option<f64> {
+    let mut all = row.key.parameters.split(", ").filter_map(|pair| pair.split_once(' '));
+    all.find(|(other, _)| *other == name)?.1.parse().ok()
+}
+
+fn from_0_to_1(layout: Layout) -> Layout {
+    layout.with_y_axis_min(0.0).with_y_axis_max(1.0)
 }
 
 fn draw(

@@ -11,11 +11,11 @@ use std::path::Path;
 
 /// Columns of a picture.
 const WIDTH: usize = 240;
-/// Strips of a set: the first maps.
+/// Strips of a set.
 const MOST: usize = 4;
 
 /// A map's pictures.
-pub(super) struct Strip {
+pub(in super::super) struct Strip {
     pub(super) title: String,
     pub(super) pictures: Vec<Picture>,
 }
@@ -26,22 +26,14 @@ pub(super) struct Picture {
     pub(super) png: Vec<u8>,
 }
 
-/// The strips of the first maps of each set.
+/// The strips of the first maps of a set.
 ///
 /// # Errors
 /// A map or a label image that cannot be read any more.
-pub(super) fn all(folder: &Path, rows: &[&Row], items: &[Item]) -> Outcome<Vec<Strip>> {
-    let mut strips = Vec::new();
-    for dataset in super::datasets(rows) {
-        let of_set = |has_truth: bool| {
-            items.iter().filter(move |item| item.truth.is_some() == has_truth).filter(|item| item.dataset == dataset)
-        };
-        // Those with a truth say more.
-        for item in of_set(true).chain(of_set(false)).take(MOST) {
-            strips.push(strip(folder, rows, item)?);
-        }
-    }
-    Ok(strips)
+pub(in super::super) fn of_maps(folder: &Path, rows: &[&Row], items: &[&Item]) -> Outcome<Vec<Strip>> {
+    let with = |has_truth: bool| items.iter().filter(move |item| item.truth.is_some() == has_truth);
+    // Those with a truth say more.
+    with(true).chain(with(false)).take(MOST).map(|item| strip(folder, rows, item)).collect()
 }
 
 fn strip(folder: &Path, rows: &[&Row], item: &Item) -> Outcome<Strip> {
@@ -57,8 +49,8 @@ fn strip(folder: &Path, rows: &[&Row], item: &Item) -> Outcome<Strip> {
     for row in rows.iter().filter(|row| row.key.dataset == item.dataset && row.key.map == item.name) {
         let Some(found) = found(row) else { continue };
         let labels = read_labels(folder.join(&found.labels), &DecodeOptions::default())?;
-        let caption = format!("{}, {} planes", row.key.method, found.planes);
+        let caption = format!("{}: {} planes", row.key.label, found.planes);
         pictures.push(Picture { caption, png: tinted_png(&frame, &labels.labels, WIDTH)? });
     }
-    Ok(Strip { title: format!("{}: {}", item.dataset, item.name), pictures })
+    Ok(Strip { title: item.name.clone(), pictures })
 }

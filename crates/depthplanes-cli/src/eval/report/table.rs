@@ -1,11 +1,11 @@
 //! The tables of a report: a line for each method, a table for each set.
 
 use super::super::rows::{Found, Row};
-use super::{datasets, mean, methods, of, per_megapixel};
+use super::{by, labels, mean, per_megapixel, share};
 use crate::table::{Align, aligned};
 
 /// A table with a heading row.
-pub(super) struct Table {
+pub(in super::super) struct Table {
     pub(super) title: String,
     pub(super) head: Vec<String>,
     pub(super) rows: Vec<Vec<String>>,
@@ -60,7 +60,7 @@ const COLUMNS: &[Column] = &[
     column("ms", 2, |_, found| Some(found.median_ms)),
     column("ms/MP", 2, |row, found| Some(per_megapixel(row, found))),
     column("planes", 1, |_, found| Some(found.planes as f64)),
-    column("% of valid", 1, |row, found| Some(100.0 * found.labelled_pixels as f64 / row.valid_pixels.max(1) as f64)),
+    column("% of valid", 1, |row, found| Some(100.0 * share(row, found))),
     score("truth", 1, |_, found| scored(found, "planes.truth")),
     score("correct", 2, |_, found| scored(found, "segcomp.correct")),
     score("over", 2, |_, found| scored(found, "segcomp.over_segmented")),
@@ -74,28 +74,25 @@ const COLUMNS: &[Column] = &[
     score("normal deg", 3, |_, found| found.normal_error_deg),
 ];
 
-/// A table for each set.
-pub(super) fn all(rows: &[&Row]) -> Vec<Table> {
-    datasets(rows).iter().map(|dataset| of_dataset(rows, dataset)).collect()
-}
-
-fn of_dataset(rows: &[&Row], dataset: &str) -> Table {
-    let methods = methods(rows);
-    let has_truth =
-        methods.iter().any(|method| of(rows, dataset, method).iter().any(|(_, found)| !found.scores.is_empty()));
+/// A line for each method; scores only where there is a truth.
+pub(in super::super) fn of(title: &str, rows: &[&Row]) -> Table {
+    let has_truth = rows.iter().filter_map(|row| super::found(row)).any(|found| !found.scores.is_empty());
     let columns: Vec<&Column> = COLUMNS.iter().filter(|column| has_truth || !column.is_score).collect();
-    let line = |method: &String| {
-        let found = of(rows, dataset, method);
+    let line = |label: &String| {
+        let found = by(rows, label);
         let cell = |column: &&Column| {
             let value = mean(found.iter().map(|(row, found)| (column.value)(row, found)));
             value.map_or("-".into(), |value| format!("{value:.*}", column.digits))
         };
-        let first = [method.clone(), found.len().to_string()];
+        let first = [label.clone(), found.len().to_string()];
         first.into_iter().chain(columns.iter().map(cell)).collect()
     };
-    let head =
-        ["method", "maps"].into_iter().chain(columns.iter().map(|column| column.head)).map(str::to_string).collect();
-    Table { title: dataset.into(), head, rows: methods.iter().map(line).collect() }
+    let heads = ["method", "maps"].into_iter().chain(columns.iter().map(|column| column.head));
+    Table {
+        title: title.into(),
+        head: heads.map(str::to_string).collect(),
+        rows: labels(rows).iter().map(line).collect(),
+    }
 }
 
 /// Every row with its key and the columns' numbers.
@@ -104,6 +101,7 @@ pub(super) fn csv(rows: &[&Row]) -> String {
     let fixed = [
         "dataset",
         "map",
+        "label",
         "method",
         "parameters",
         "version",
@@ -119,7 +117,8 @@ pub(super) fn csv(rows: &[&Row]) -> String {
     let mut text = head.collect::<Vec<_>>().join(",") + "\n";
     for row in rows {
         let key = &row.key;
-        let named = [&key.dataset, &key.map, &key.method, &key.parameters, &key.version, &row.machine, &row.date];
+        let named =
+            [&key.dataset, &key.map, &key.label, &key.method, &key.parameters, &key.version, &row.machine, &row.date];
         let mut cells: Vec<String> = named.into_iter().map(|cell| quoted(cell)).collect();
         cells.extend([row.jobs, key.repeat, row.size[0], row.size[1]].map(|number| number.to_string()));
         cells.push(super::found(row).map_or(String::new(), |found| found.least_ms.to_string()));
