@@ -6,7 +6,7 @@
 //! off while 29 % are (the thresholds of site percolation on the square lattice).
 
 use super::planes::BENT;
-use crate::group::{Grouper, Groups, reserve_to, vectorised};
+use crate::group::{Grouper, reserve_to, vectorised};
 
 /// Pixels of a row that are looked at together.
 const ABREAST: usize = 32;
@@ -17,7 +17,8 @@ const NOTHING: [u16; ABREAST] = [0; ABREAST];
 /// Joins pieces; reuses its memory.
 #[derive(Debug, Default)]
 pub(super) struct Pieces {
-    /// For each pixel of a row 1 if one two steps off, below or to the right, has its label, and none between has; else 0.
+    /// For each pixel of a row, as bits, which of the four that are two steps off, below or to the right, have its label
+    /// where none between has.
     apart: Vec<u8>,
     /// Groups that are one.
     pairs: Vec<[u32; 2]>,
@@ -37,14 +38,18 @@ impl Pieces {
             let eights = apart.as_chunks::<8>().0.iter().map(|eight| u64::from_le_bytes(*eight));
             for (first, mut rest) in (0..).step_by(8).zip(eights) {
                 while rest != 0 {
-                    let u = first + rest.trailing_zeros() as usize / 8;
-                    rest &= rest - 1;
-                    let label = image[v * stride + u];
-                    let is_alike = |[x, y]: [usize; 2]| x < width && y < height && image[y * stride + x] == label;
-                    let twos = [[u + 2, v], [u, v + 2], [u + 1, v + 1], [u.wrapping_sub(1), v + 1]];
-                    twos.into_iter()
-                        .filter(|&to| is_alike(to))
-                        .for_each(|to| list(grouper.groups(), [[u, v], to], pairs));
+                    let shift = rest.trailing_zeros() & !7;
+                    let ways = (rest >> shift) as u8;
+                    rest &= !(0xff << shift);
+                    let u = first + shift as usize / 8;
+                    let own = grouper.groups().at([u, v]);
+                    for (way, [x, y]) in
+                        [[u + 2, v], [u, v + 2], [u + 1, v + 1], [u.wrapping_sub(1), v + 1]].into_iter().enumerate()
+                    {
+                        if ways >> way & 1 > 0 && x < width && y < height {
+                            list(own, grouper.groups().at([x, y]), pairs);
+                        }
+                    }
                 }
             }
         }
@@ -52,12 +57,11 @@ impl Pieces {
     }
 }
 
-/// Lists the groups of two pixels, if they are two.
+/// Lists two groups, if they are two.
 #[inline(always)]
-fn list(groups: &Groups, [from, to]: [[usize; 2]; 2], pairs: &mut Vec<[u32; 2]>) {
-    let pair = [groups.at(from), groups.at(to)];
-    if pair[0] != pair[1] && pairs.last() != Some(&pair) {
-        pairs.push(pair);
+fn list(a: u32, b: u32, pairs: &mut Vec<[u32; 2]>) {
+    if a != b && pairs.last() != Some(&[a, b]) {
+        pairs.push([a, b]);
     }
 }
 
@@ -88,9 +92,14 @@ fn find_apart(image: &[u16], row: usize, apart: &mut [u8]) {
             // Around a lone hole they are one group for sure.
             let around = (below[i] == own) & (across[i] == own) & (corner[i] == own);
             let beside = (right[i] == own) & (across[i] == own) & (foot[i] == own);
-            let aside = (by_right & (across[i] == own)) | ((left[i] != own) & (back[i] == own));
-            let two = (by_right & (second[i] == own) & !around) | (by_below & (((lower[i] == own) & !beside) | aside));
-            apart[i] = u8::from(is_plane & two);
+            let to = [
+                by_right & (second[i] == own) & !around,
+                by_below & (lower[i] == own) & !beside,
+                by_right & by_below & (across[i] == own),
+                by_below & (left[i] != own) & (back[i] == own),
+            ];
+            let ways = u8::from(to[0]) | u8::from(to[1]) << 1 | u8::from(to[2]) << 2 | u8::from(to[3]) << 3;
+            apart[i] = if is_plane { ways } else { 0 };
         }
     }
 }
