@@ -83,6 +83,20 @@ impl Moments {
         self.qq += other.qq;
     }
 
+    /// Takes away the sums of some of the points about the same origin.
+    pub fn remove(&mut self, other: &Moments) {
+        self.n -= other.n;
+        self.u -= other.u;
+        self.v -= other.v;
+        self.q -= other.q;
+        self.uu -= other.uu;
+        self.uv -= other.uv;
+        self.vv -= other.vv;
+        self.uq -= other.uq;
+        self.vq -= other.vq;
+        self.qq -= other.qq;
+    }
+
     /// The sums of the same points about an origin that lies (du, dv, dq) before this one.
     #[inline]
     pub fn moved(&self, [du, dv, dq]: [f64; 3]) -> Moments {

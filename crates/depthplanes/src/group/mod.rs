@@ -136,6 +136,13 @@ impl Grouper {
         groups
     }
 
+    /// Puts pairs of groups of the last map together.
+    pub(crate) fn unite(&mut self, pairs: &[[u32; 2]]) {
+        if !pairs.is_empty() {
+            self.groups.unite(pairs);
+        }
+    }
+
     /// The groups of the last map.
     pub fn groups(&self) -> &Groups {
         &self.groups
@@ -158,12 +165,15 @@ pub struct Groups {
     group_of_label: Vec<u32>,
     /// The pixels of each group.
     sizes: Vec<u32>,
+    /// For each group one that it is united with, or itself.
+    parents: Vec<u32>,
 }
 
 impl Groups {
     fn new(kernel: &'static Kernel) -> Self {
-        let (strips, group_of_label, sizes) = Default::default();
-        Groups { kernel, leaves_out_singles: false, threads: 1, width: 0, height: 0, strips, group_of_label, sizes }
+        let (strips, group_of_label, sizes, parents) = Default::default();
+        let [width, height] = [0; 2];
+        Groups { kernel, leaves_out_singles: false, threads: 1, width, height, strips, group_of_label, sizes, parents }
     }
 
     fn prepare<T: Pixel>(&mut self, map: &DepthView<'_, T>, threads: usize) {
@@ -176,6 +186,16 @@ impl Groups {
         }
         reserve_to(&mut self.group_of_label, map.area());
         reserve_to(&mut self.sizes, map.area());
+        reserve_to(&mut self.parents, map.area());
+    }
+
+    fn unite(&mut self, pairs: &[[u32; 2]]) {
+        let Groups { group_of_label, sizes, parents, .. } = self;
+        parents.clear();
+        parents.extend(0..sizes.len() as u32);
+        pairs.iter().for_each(|&[a, b]| forest::unite(parents, a, b));
+        forest::flatten(parents, sizes);
+        group_of_label.iter_mut().for_each(|group| *group = parents[*group as usize]);
     }
 
     /// The provisional labels of each strip.
@@ -249,6 +269,15 @@ impl Groups {
                 visit(Run { v: v as u32, u_first, u_last, group: groups[label as usize] });
             });
         }
+    }
+
+    /// The group of the pixel in column `u`, row `v`, which has to be valid and no single left out.
+    #[inline(always)]
+    pub(crate) fn at(&self, [u, v]: [usize; 2]) -> u32 {
+        let strip = &self.strips[v / self.strips[0].rows.len()];
+        let word = strip.words_of(v - strip.rows.start).start + u / 64;
+        let label = strip.labels[strip.run_at(word, u64::MAX >> (63 - u % 64))];
+        self.group_of_label[strip.first_label + label as usize]
     }
 
     /// The pixels of each group, in raster order of the groups' first pixels.

@@ -50,7 +50,7 @@ pub(super) const MIN: Param = Param {
 };
 
 impl Finisher {
-    /// Makes a detection of a region image (0 = no region). The observer is told of [`STAGES`].
+    /// Makes a detection of a region image (0 = no region); `unite` may put groups together. The observer is told of [`STAGES`].
     ///
     /// # Errors
     /// [`crate::Error::TooManyPlanes`].
@@ -59,12 +59,15 @@ impl Finisher {
         map: &DepthView<'_, T>,
         image: &DepthView<'_, u16>,
         wanted: &Wanted<'_>,
+        unite: impl FnOnce(&mut Grouper),
         job: &mut Job<'_>,
         out: &mut Detection,
     ) -> Result<()> {
         let Finisher { grouper, selection, describer } = self;
         let &Wanted { min, min_area, noise, valid_pixels } = wanted;
-        let groups = grouper.group(image, &LinkRule::new(image.validity(), 0.0)?, job.threads);
+        grouper.group(image, &LinkRule::new(image.validity(), 0.0)?, job.threads);
+        unite(grouper);
+        let groups = grouper.groups();
         job.done("group");
         selection.select(groups, min)?;
         job.done("select");

@@ -177,13 +177,19 @@ impl Grid {
         place.row as usize * self.columns + place.column as usize
     }
 
+    /// (u, v) of a cell's middle.
+    #[inline(always)]
+    pub(super) fn middle(&self, place: Place) -> [f64; 2] {
+        let half = (self.side - 1) as f64 / 2.0;
+        [place.column, place.row].map(|place| f64::from(place) * self.side as f64 + half)
+    }
+
     /// A cell.
     #[inline(always)]
     pub(super) fn cell(&self, place: Place) -> Cell {
         let Sums { n, u, v, uu, uv, vv, a, b, c, squares, .. } = &self.sums;
         let at = self.at(place);
-        let half = (self.side - 1) as f64 / 2.0;
-        let middle = [place.column, place.row].map(|place| f64::from(place) * self.side as f64 + half);
+        let middle = self.middle(place);
         let number = |numbers: &[f32]| f64::from(numbers[at]);
         Cell {
             middle,
@@ -228,6 +234,12 @@ impl Grid {
 pub(super) struct Place {
     pub(super) row: u32,
     pub(super) column: u32,
+}
+
+impl Place {
+    pub(super) fn new(column: usize, row: usize) -> Self {
+        Place { row: row as u32, column: column as u32 }
+    }
 }
 
 /// Largest sum of squared residuals of n pixels of one plane, in variances: the mean of chi-squared is n, its

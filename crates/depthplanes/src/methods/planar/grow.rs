@@ -74,6 +74,18 @@ impl Region {
         self.fitted_at = self.sums.n;
     }
 
+    /// Takes a cell's pixels in; the plane stays as it is.
+    pub(super) fn take(&mut self, cell: &Cell) {
+        self.sums.merge(&cell.moments(self.origin));
+        self.variance += cell.variance * cell.n;
+    }
+
+    /// Gives a cell's pixels away; the plane stays as it is.
+    pub(super) fn give(&mut self, cell: &Cell) {
+        self.sums.remove(&cell.moments(self.origin));
+        self.variance -= cell.variance * cell.n;
+    }
+
     /// Takes a cell in if its pixels lie on the plane.
     #[inline(always)]
     fn takes(&mut self, cell: &Cell, only_flat: bool, confidence: f64) -> bool {
@@ -104,6 +116,8 @@ pub(super) struct Regions {
     seeds: Vec<(f32, Place)>,
     /// Cells whose neighbours are still to be asked.
     queue: Vec<Place>,
+    /// For each region whether a tile went over to it or from it.
+    pub(super) has_changed: Vec<bool>,
 }
 
 impl Regions {

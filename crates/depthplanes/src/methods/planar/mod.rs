@@ -15,10 +15,12 @@ mod grid;
 mod grow;
 mod level;
 mod merge;
+mod pieces;
 mod planes;
 mod quadratic;
 mod reach;
 mod seams;
+mod settle;
 #[cfg(test)]
 mod tests;
 mod tiles;
@@ -29,6 +31,7 @@ use super::{Job, Method, MethodInfo, Param, ParamKind};
 use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::explanation::Explanation;
+use crate::group::Grouper;
 use crate::map::{AnyView, DepthView, Pixel};
 use crate::noise::{NoiseModel, SensorNoise, Space};
 use crate::with_view;
@@ -40,6 +43,7 @@ use field::Field;
 use grow::{Region, Regions};
 use level::Level;
 use merge::Merger;
+use pieces::Pieces;
 use planes::Planes;
 use reach::Reach;
 use seams::Seams;
@@ -197,6 +201,7 @@ struct Runner {
     contacts: Contacts,
     bent: Bent,
     finisher: Finisher,
+    pieces: Pieces,
 }
 
 impl Method for Runner {
@@ -251,7 +256,7 @@ impl Runner {
         watch(Moment::Assigned, self, &noise);
         self.contacts.join(&mut self.regions.all, &mut self.image);
         job.done("assign");
-        let Runner { params, field, image, finisher, .. } = self;
+        let Runner { params, field, image, finisher, pieces, .. } = self;
         let ids = planes::of_image(image, field)?;
         let wanted = Wanted {
             min: params.min,
@@ -259,7 +264,8 @@ impl Runner {
             noise: Some(&noise),
             valid_pixels: field.valid_pixels,
         };
-        finisher.finish(&map, &ids, &wanted, job, out)?;
+        let join = |grouper: &mut Grouper| pieces.join(image, [map.width(), map.height(), field.stride], grouper);
+        finisher.finish(&map, &ids, &wanted, join, job, out)?;
         out.curved = if job.curved { Some(self.find_bent(&map, job, &noise, out.curved.take())?) } else { None };
         job.done("label");
         Ok(())
@@ -283,6 +289,7 @@ impl Runner {
         let Planar { ray, confidence, .. } = self.params;
         self.pyramid.expect(noise, ray, confidence, threads);
         self.regions.grow(&mut self.pyramid, confidence);
+        self.regions.settle(&mut self.pyramid.grids[0]);
         watch(Moment::Grown, self, noise);
         self.merger.merge(&self.pyramid.grids[0], &mut self.regions);
         watch(Moment::Merged, self, noise);

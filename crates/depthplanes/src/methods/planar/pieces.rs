@@ -1,0 +1,105 @@
+//! Stage "group", second part: pieces of a region that are two steps apart are one plane.
+//!
+//! In: the region image and its groups. Out: fewer groups. Groups are 4-connected, and where a sensor sees a surface at a
+//! grazing angle half of the pixels are missing: what was measured of a plane falls apart. A plane whose pixels are missing
+//! at random holds together by its four next pixels while 59 % are there, and by the twelve that are one or two steps
+//! off while 29 % are (the thresholds of site percolation on the square lattice).
+
+use super::planes::BENT;
+use crate::group::{Grouper, reserve_to, vectorised};
+
+/// Pixels of a row that are looked at together.
+const ABREAST: usize = 32;
+
+/// What lies beyond the image.
+const NOTHING: [u16; ABREAST] = [0; ABREAST];
+
+/// Joins pieces; reuses its memory.
+#[derive(Debug, Default)]
+pub(super) struct Pieces {
+    /// For each pixel of a row, as bits, which of the four that are two steps off, below or to the right, have its label
+    /// where none between has.
+    apart: Vec<u8>,
+    /// Groups that are one.
+    pairs: Vec<[u32; 2]>,
+}
+
+impl Pieces {
+    /// Joins the groups of a region image of rows of `stride` pixels, a multiple of [`ABREAST`].
+    pub(super) fn join(&mut self, image: &[u16], [width, height, stride]: [usize; 3], grouper: &mut Grouper) {
+        let Pieces { apart, pairs } = self;
+        reserve_to(pairs, image.len());
+        apart.resize(stride, 0);
+        for v in 0..height {
+            vectorised(
+                #[inline(always)]
+                || find_apart(image, v * stride, apart),
+            );
+            let eights = apart.as_chunks::<8>().0.iter().map(|eight| u64::from_le_bytes(*eight));
+            for (first, mut rest) in (0..).step_by(8).zip(eights) {
+                while rest != 0 {
+                    let shift = rest.trailing_zeros() & !7;
+                    let ways = (rest >> shift) as u8;
+                    rest &= !(0xff << shift);
+                    let u = first + shift as usize / 8;
+                    let own = grouper.groups().at([u, v]);
+                    for (way, [x, y]) in
+                        [[u + 2, v], [u, v + 2], [u + 1, v + 1], [u.wrapping_sub(1), v + 1]].into_iter().enumerate()
+                    {
+                        if ways >> way & 1 > 0 && x < width && y < height {
+                            list(own, grouper.groups().at([x, y]), pairs);
+                        }
+                    }
+                }
+            }
+        }
+        grouper.unite(pairs);
+    }
+}
+
+/// Lists two groups, if they are two.
+#[inline(always)]
+fn list(a: u32, b: u32, pairs: &mut Vec<[u32; 2]>) {
+    if a != b && pairs.last() != Some(&[a, b]) {
+        pairs.push([a, b]);
+    }
+}
+
+/// Fills `apart` for the row that begins at `row`; what it says at the ends of a row and of the image may be wrong.
+#[inline(always)]
+fn find_apart(image: &[u16], row: usize, apart: &mut [u8]) {
+    let stride = apart.len();
+    for (apart, at) in apart.as_chunks_mut::<ABREAST>().0.iter_mut().zip((row..).step_by(ABREAST)) {
+        let part = |first: usize| image.get(first..).and_then(|from| from.first_chunk::<ABREAST>());
+        let here = part(at).expect("rows of whole parts");
+        let (right, below) = (part(at + 1).unwrap_or(&NOTHING), part(at + stride).unwrap_or(&NOTHING));
+        let mut any = 0;
+        for i in 0..ABREAST {
+            any |= (here[i] ^ right[i]) | (here[i] ^ below[i]);
+        }
+        *apart = [0; ABREAST];
+        if any == 0 {
+            continue;
+        }
+        let (second, lower) = (part(at + 2).unwrap_or(&NOTHING), part(at + 2 * stride).unwrap_or(&NOTHING));
+        let (across, back) = (part(at + stride + 1).unwrap_or(&NOTHING), part(at + stride - 1).unwrap_or(&NOTHING));
+        let left = part(at.wrapping_sub(1)).unwrap_or(&NOTHING);
+        let (corner, foot) = (part(at + stride + 2).unwrap_or(&NOTHING), part(at + 2 * stride + 1).unwrap_or(&NOTHING));
+        for i in 0..ABREAST {
+            let own = here[i];
+            let is_plane = (own != 0) & (own != BENT);
+            let [by_right, by_below] = [right[i] != own, below[i] != own];
+            // Around a lone hole they are one group for sure.
+            let around = (below[i] == own) & (across[i] == own) & (corner[i] == own);
+            let beside = (right[i] == own) & (across[i] == own) & (foot[i] == own);
+            let to = [
+                by_right & (second[i] == own) & !around,
+                by_below & (lower[i] == own) & !beside,
+                by_right & by_below & (across[i] == own),
+                by_below & (left[i] != own) & (back[i] == own),
+            ];
+            let ways = u8::from(to[0]) | u8::from(to[1]) << 1 | u8::from(to[2]) << 2 | u8::from(to[3]) << 3;
+            apart[i] = if is_plane { ways } else { 0 };
+        }
+    }
+}
