@@ -18,7 +18,7 @@ use std::ops::Range;
 
 /// Largest root mean square, in noise deviations of a pixel, of a plane's bow. Noise alone gives a region of
 /// 240 pixels 0.11 (three terms of a quadratic).
-const BOW: f64 = 0.35;
+const BOW: f64 = 0.375;
 /// Pixels from which on a sensor's own distortion counts: it bows a plane the more, the larger its picture. What is so
 /// large is no facet beside others either.
 const LARGE: f64 = 4000.0;

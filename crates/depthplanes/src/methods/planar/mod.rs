@@ -264,7 +264,7 @@ impl Runner {
             noise: Some(&noise),
             valid_pixels: field.valid_pixels,
         };
-        let join = |grouper: &mut Grouper| pieces.join(image, [map.width(), map.height(), field.stride], grouper);
+        let join = |grouper: &mut Grouper| pieces.join(field, image, grouper);
         finisher.finish(&map, &ids, &wanted, join, job, out)?;
         out.curved = if job.curved { Some(self.find_bent(&map, job, &noise, out.curved.take())?) } else { None };
         job.done("label");

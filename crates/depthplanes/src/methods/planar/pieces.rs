@@ -5,6 +5,7 @@
 //! at random holds together by its four next pixels while 59 % are there, and by the twelve that are one or two steps
 //! off while 29 % are (the thresholds of site percolation on the square lattice).
 
+use super::field::Field;
 use super::planes::BENT;
 use crate::group::{Grouper, reserve_to, vectorised};
 
@@ -25,8 +26,11 @@ pub(super) struct Pieces {
 }
 
 impl Pieces {
-    /// Joins the groups of a region image of rows of `stride` pixels, a multiple of [`ABREAST`].
-    pub(super) fn join(&mut self, image: &[u16], [width, height, stride]: [usize; 3], grouper: &mut Grouper) {
+    /// Joins the groups of a region image, over missing pixels only: what was measured between and lies on no plane parts
+    /// them.
+    pub(super) fn join(&mut self, field: &Field, image: &[u16], grouper: &mut Grouper) {
+        let Field { width, height, stride, ref q, .. } = *field;
+        let is_missing = |[u, v]: [usize; 2]| q[v * stride + u].is_nan();
         let Pieces { apart, pairs } = self;
         reserve_to(pairs, image.len());
         apart.resize(stride, 0);
@@ -43,10 +47,17 @@ impl Pieces {
                     rest &= !(0xff << shift);
                     let u = first + shift as usize / 8;
                     let own = grouper.groups().at([u, v]);
-                    for (way, [x, y]) in
-                        [[u + 2, v], [u, v + 2], [u + 1, v + 1], [u.wrapping_sub(1), v + 1]].into_iter().enumerate()
-                    {
-                        if ways >> way & 1 > 0 && x < width && y < height {
+                    // Where each leads, and what lies between.
+                    let (right, below, left) = ([u + 1, v], [u, v + 1], [u.wrapping_sub(1), v]);
+                    let to = [
+                        ([u + 2, v], [right, right]),
+                        ([u, v + 2], [below, below]),
+                        ([u + 1, v + 1], [right, below]),
+                        ([u.wrapping_sub(1), v + 1], [left, below]),
+                    ];
+                    for (way, ([x, y], between)) in to.into_iter().enumerate() {
+                        let is_there = ways >> way & 1 > 0 && x < width && y < height;
+                        if is_there && between.into_iter().any(is_missing) {
                             list(own, grouper.groups().at([x, y]), pairs);
                         }
                     }
