@@ -161,6 +161,11 @@ impl NoiseModel {
         }
     }
 
+    /// What the map's steps are in q, at q.
+    pub(crate) fn step(&self, q: f64) -> f64 {
+        self.step * self.space.unit(q)
+    }
+
     /// Standard deviation of q by the noise as stated, rounding left out.
     ///
     /// An error of depth of `s` metres is `s p^2` in inverse depth p, and that over the slope in units of q.

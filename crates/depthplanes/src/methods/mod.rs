@@ -2,12 +2,16 @@
 //!
 //! A row of [`METHODS`] gives a method its flag, its keyword, its help and its contract tests.
 
+mod a_contrario;
 mod affine;
 mod cloud;
 mod finish;
+mod fpdidm;
+mod gradient;
 mod ngaf;
 mod normals;
 mod planar;
+mod ppdfdm;
 mod records;
 mod tries;
 
@@ -22,7 +26,8 @@ pub use ngaf::Ngaf;
 pub use planar::Planar;
 
 /// All methods. The first is the default.
-pub static METHODS: &[&MethodInfo] = &[&planar::INFO, &ngaf::INFO, &normals::INFO];
+pub static METHODS: &[&MethodInfo] =
+    &[&planar::INFO, &ngaf::INFO, &ppdfdm::INFO, &fpdidm::INFO, &normals::INFO, &gradient::INFO];
 
 /// One row of [`METHODS`].
 #[derive(Debug)]

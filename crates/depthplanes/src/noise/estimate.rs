@@ -6,7 +6,7 @@
 
 use super::steps::Steps;
 use super::{NoiseModel, SensorNoise, Space};
-use crate::camera::Measure;
+use crate::camera::{Measure, Sensor};
 use crate::error::{Error, Result};
 use crate::fit::Moments;
 use crate::map::{AnyView, DepthView, Pixel};
@@ -221,6 +221,21 @@ impl Estimator {
         };
         let (noise, range) = self.blocks.noise(Space::of(measure));
         Ok(Estimate { noise, step, blocks: found, measure, range })
+    }
+}
+
+impl NoiseModel {
+    /// Of one map: the sensor's noise as stated, or else as the map shows it; none where it shows no block.
+    pub(crate) fn of_map<T: Pixel>(map: &DepthView<'_, T>, sensor: &Sensor) -> Self {
+        let measure = sensor.measure;
+        let mut estimator = Estimator::default();
+        let step = estimator.frame(map, measure).expect("one frame has one measure");
+        let stated = sensor.noise.and_then(|noise| NoiseModel::new(measure, noise, step));
+        let estimated = || {
+            let (noise, _) = estimator.blocks.noise(Space::of(measure));
+            Some(NoiseModel::new(measure, noise, step)?.of_scatter())
+        };
+        stated.or_else(estimated).expect("an estimate is of the map's own kind")
     }
 }
 
