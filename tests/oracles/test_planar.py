@@ -24,7 +24,7 @@ def score(program, folder, source, truth, reading, lowest=1):
     return pair["segcomp"] | {"f_score": pair["evops"]["f_score"], "f": pair["synpeb"]["f"]}
 
 
-@pytest.mark.parametrize("setting, least", [(["--preset", "structured-light"], 15.8), ([], 15.6)])
+@pytest.mark.parametrize("setting, least", [(["--preset", "structured-light"], 16.4), ([], 16.0)])
 def test_segcomp_abw(program, data, tell, tmp_path, setting, least):
     found = []
     for depth in rows(data, "gt_segcomp_abw/abw.test."):
@@ -62,7 +62,7 @@ def test_synpeb(program, data, tell, tmp_path, setting, least):
     assert share >= least
 
 
-@pytest.mark.parametrize("setting, least", [([], 0.47), (["--noise", "0.004"], 0.51)])
+@pytest.mark.parametrize("setting, least", [([], 0.44), (["--noise", "0.004"], 0.46)])
 def test_evops_icl(program, data, tell, tmp_path, setting, least):
     (depth,) = rows(data, "gt_evops/icl_0.depth")
     reading = ["--encoding", "tum", "--intrinsics", ",".join(depth[7].split()[:4]), *setting]
@@ -100,7 +100,7 @@ def test_sr4000_dpd(program, data, tell, tmp_path):
         found.append(score(program, tmp_path, source, truth, ["--encoding", "grey", "--noise", "2"]))
     tell_mean(tell, f"SR4000 (DPD), {len(found)} images, planar --noise 2", found)
     assert len(found) == 5
-    assert mean(found, "correct") >= 4.6
+    assert mean(found, "correct") >= 4.0
 
 
 def regions_of(colours):

@@ -50,11 +50,26 @@ pub(super) const MIN: Param = Param {
 };
 
 impl Finisher {
-    /// Makes a detection of a region image (0 = no region); `unite` may put groups together. The observer is told of [`STAGES`].
+    /// Makes a detection of a region image (0 = no region). The observer is told of [`STAGES`].
     ///
     /// # Errors
     /// [`crate::Error::TooManyPlanes`].
     pub(super) fn finish<T: Pixel>(
+        &mut self,
+        map: &DepthView<'_, T>,
+        image: &DepthView<'_, u16>,
+        wanted: &Wanted<'_>,
+        job: &mut Job<'_>,
+        out: &mut Detection,
+    ) -> Result<()> {
+        self.finish_united(map, image, wanted, |_| (), job, out)
+    }
+
+    /// The same; `unite` may put groups together before they are counted.
+    ///
+    /// # Errors
+    /// [`crate::Error::TooManyPlanes`].
+    pub(super) fn finish_united<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
         image: &DepthView<'_, u16>,

@@ -94,7 +94,7 @@ impl Runner {
         job.done("grow");
         let image = DepthView::new(&image, map.width(), map.height())?;
         let wanted = Wanted { min: self.min, min_area: 0.0, noise: None, valid_pixels: affine.valid_pixels };
-        self.finisher.finish(&map, &image, &wanted, |_| (), job, out)
+        self.finisher.finish(&map, &image, &wanted, job, out)
     }
 
     /// The region of every pixel, 0 for none.

@@ -265,7 +265,7 @@ impl Runner {
             valid_pixels: field.valid_pixels,
         };
         let join = |grouper: &mut Grouper| pieces.join(field, image, grouper);
-        finisher.finish(&map, &ids, &wanted, join, job, out)?;
+        finisher.finish_united(&map, &ids, &wanted, join, job, out)?;
         out.curved = if job.curved { Some(self.find_bent(&map, job, &noise, out.curved.take())?) } else { None };
         job.done("label");
         Ok(())
