@@ -5,9 +5,13 @@
 mod affine;
 mod cloud;
 mod finish;
+mod hough;
+mod mdl;
 mod ngaf;
 mod normals;
+mod pieces;
 mod planar;
+mod ransac;
 mod records;
 mod tries;
 
@@ -22,7 +26,8 @@ pub use ngaf::Ngaf;
 pub use planar::Planar;
 
 /// All methods. The first is the default.
-pub static METHODS: &[&MethodInfo] = &[&planar::INFO, &ngaf::INFO, &normals::INFO];
+pub static METHODS: &[&MethodInfo] = 
+    &[&planar::INFO, &ngaf::INFO, &ransac::INFO, &hough::INFO, &normals::INFO, &mdl::INFO];
 
 /// One row of [`METHODS`].
 #[derive(Debug)]
