@@ -54,7 +54,7 @@ fn methods_are_found_by_name() {
         assert_eq!(find(method.name).unwrap().name, method.name);
         assert_eq!(method.with(&[]).unwrap().info().name, method.name);
     }
-    for given in ["", "NGAF", "ngaf ", "hough"] {
+    for given in ["", "NGAF", "ngaf ", "sonar"] {
         let error = find(given).unwrap_err();
         let text = error.to_string();
         assert!(matches!(error, Error::Unknown { what: "method", .. }));

@@ -55,6 +55,21 @@ impl Affine {
         Some([few, last].map(|at| *all.select_nth_unstable_by(at, f64::total_cmp).1))
     }
 
+    /// Gives pixels beside a region (0 = none) to it if it takes them, given pixel and region, and so on from there.
+    pub(super) fn spread(&self, image: &mut [u16], takes: impl Fn(usize, u16) -> bool) {
+        let mut queue: Vec<usize> = (0..image.len()).filter(|&at| image[at] > 0).collect();
+        let mut next = 0;
+        while let Some(&at) = queue.get(next) {
+            next += 1;
+            for beside in self.neighbours(at) {
+                if image[beside] == 0 && takes(beside, image[at]) {
+                    image[beside] = image[at];
+                    queue.push(beside);
+                }
+            }
+        }
+    }
+
     /// The plane in the window of `2 radius + 1` columns and rows around each valid pixel of which more than half is
     /// measured.
     pub(super) fn planes(&self, radius: usize) -> Vec<Option<Around>> {

@@ -55,8 +55,6 @@ pub(super) struct Rays {
     camera: Intrinsics,
     slope: f64,
     offset: f64,
-    /// Whether lengths are in metres.
-    pub(super) is_metric: bool,
 }
 
 impl Rays {
@@ -70,10 +68,10 @@ impl Rays {
             Measure::Disparity => None,
         };
         match (sensor.intrinsics, metres) {
-            (Some(camera), Some((slope, offset))) => Rays { camera, slope, offset, is_metric: true },
+            (Some(camera), Some((slope, offset))) => Rays { camera, slope, offset },
             (camera, _) => {
                 let median = affine.range(0.5).map_or(1.0, |[low, _]| low);
-                Rays { camera: camera.unwrap_or(usual), slope: 1.0 / median, offset: 0.0, is_metric: false }
+                Rays { camera: camera.unwrap_or(usual), slope: 1.0 / median, offset: 0.0 }
             }
         }
     }
@@ -83,6 +81,16 @@ impl Rays {
         let Intrinsics { fx, fy, cx, cy } = self.camera;
         let depth = 1.0 / (self.slope * q + self.offset);
         (depth > 0.0 && depth.is_finite()).then_some([(u - cx) / fx * depth, (v - cy) / fy * depth, depth])
+    }
+
+    /// The plane in space where `q = a u + b v + c`, turned away from the camera; none if it passes through the camera.
+    ///
+    /// Inverse depth is affine in u and v too: `1 = normal . point` with the three coefficients of the rays as normal.
+    pub(super) fn plane(&self, [a, b, c]: [f64; 3]) -> Option<Plane3> {
+        let Intrinsics { fx, fy, cx, cy } = self.camera;
+        let inverse = [self.slope * a * fx, self.slope * b * fy, self.slope * (c + a * cx + b * cy) + self.offset];
+        let normal = unit(inverse)?;
+        Some(Plane3 { normal, distance: 1.0 / dot(inverse, inverse).sqrt() })
     }
 
     /// The unit normal of the plane around a pixel, turned away from the camera.
@@ -103,8 +111,8 @@ pub(super) struct Cloud {
     pub(super) normals: Vec<Vec3>,
     /// Pixels that have both, by their number in raster order.
     pub(super) known: Vec<u32>,
-    /// Whether lengths are in metres; otherwise in median depths.
-    pub(super) is_metric: bool,
+    /// From pixels to space.
+    pub(super) rays: Rays,
 }
 
 impl Cloud {
@@ -121,7 +129,7 @@ impl Cloud {
         let normals: Vec<Vec3> = affine.planes(radius).iter().enumerate().map(normal).collect();
         let is_known = |&at: &u32| points[at as usize][2].is_finite() && normals[at as usize][2].is_finite();
         let known = (0..points.len() as u32).filter(is_known).collect();
-        Cloud { points, normals, known, is_metric: rays.is_metric }
+        Cloud { points, normals, known, rays }
     }
 
     /// Length of the diagonal of the box around all points but one in fifty on either side of each axis.

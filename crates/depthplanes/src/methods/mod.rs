@@ -8,10 +8,14 @@ mod cloud;
 mod finish;
 mod fpdidm;
 mod gradient;
+mod hough;
+mod mdl;
 mod ngaf;
 mod normals;
+mod pieces;
 mod planar;
 mod ppdfdm;
+mod ransac;
 mod records;
 mod tries;
 
@@ -26,8 +30,17 @@ pub use ngaf::Ngaf;
 pub use planar::Planar;
 
 /// All methods. The first is the default.
-pub static METHODS: &[&MethodInfo] =
-    &[&planar::INFO, &ngaf::INFO, &ppdfdm::INFO, &fpdidm::INFO, &normals::INFO, &gradient::INFO];
+pub static METHODS: &[&MethodInfo] = &[
+    &planar::INFO,
+    &ngaf::INFO,
+    &ransac::INFO,
+    &ppdfdm::INFO,
+    &fpdidm::INFO,
+    &hough::INFO,
+    &normals::INFO,
+    &mdl::INFO,
+    &gradient::INFO,
+];
 
 /// One row of [`METHODS`].
 #[derive(Debug)]

@@ -135,26 +135,12 @@ impl Runner {
                 members.iter().for_each(|&at| image[at] = planes.len() as u16);
             }
         }
-        self.spread(affine, points, &planes, &mut image);
+        // Whatever their normals: near an edge, neighbours are on two surfaces, and normals are those of neither.
+        affine.spread(&mut image, |at, region| {
+            let plane = planes[usize::from(region) - 1];
+            points[at].is_some_and(|point| plane.off(point).abs() <= self.distance)
+        });
         image
-    }
-
-    /// Gives points beside a region that lie on its plane to it, whatever their normals: near an edge, neighbours are on
-    /// two surfaces, and normals are those of neither.
-    fn spread(&self, affine: &Affine, points: &[Option<Vec3>], planes: &[Plane3], image: &mut [u16]) {
-        let mut queue: Vec<usize> = (0..image.len()).filter(|&at| image[at] > 0).collect();
-        let mut next = 0;
-        while let Some(&at) = queue.get(next) {
-            next += 1;
-            let plane = planes[usize::from(image[at]) - 1];
-            for beside in affine.neighbours(at) {
-                let lies_on = points[beside].is_some_and(|point| plane.off(point).abs() <= self.distance);
-                if image[beside] == 0 && lies_on {
-                    image[beside] = image[at];
-                    queue.push(beside);
-                }
-            }
-        }
     }
 }
 

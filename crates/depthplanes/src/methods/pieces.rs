@@ -1,0 +1,186 @@
+//! From planes in space to connected pieces of the image: the steps that RANSAC and the Hough transform share.
+//!
+//! In: a map's points, and planes that some of them suggest. Out: the region of every pixel. A piece is a connected part
+//! of the points on a plane that no earlier piece has; its plane is fitted to it in q, where the sensor's noise is even.
+
+use super::affine::Affine;
+use super::cloud::{Cloud, Plane3, dot};
+use super::{Param, ParamKind};
+use crate::fit::Moments;
+
+/// How often a plane is fitted to its piece; the piece is then sought anew.
+const FITS: usize = 3;
+
+/// Both methods have these parameters.
+pub(super) const EPSILON: Param = Param {
+    name: "epsilon",
+    default: 0.0,
+    min: 0.0,
+    max: f64::MAX,
+    kind: ParamKind::Real,
+    unit: "m or median depths",
+    meaning: "How far a point may lie from its plane, in median depths where unit or camera is unknown; 0 for 1 % of the diagonal of the box around all points.",
+    source: Some("Schnabel et al. 2007"),
+};
+
+pub(super) const SEED: Param = Param {
+    name: "seed",
+    default: 1.0,
+    min: 0.0,
+    max: u32::MAX as f64,
+    kind: ParamKind::Whole,
+    unit: "number",
+    meaning: "Which random draws to make; the same number gives the same answer.",
+    source: None,
+};
+
+/// Which points are on a plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tolerance {
+    /// Their largest distance.
+    pub(super) epsilon: f64,
+    /// Cosine of the largest angle of their normals, -1 for any.
+    pub(super) cosine: f64,
+}
+
+impl Tolerance {
+    /// With [`EPSILON`] as given.
+    pub(super) fn new(epsilon: f64, cosine: f64, cloud: &Cloud) -> Self {
+        Tolerance { epsilon: if epsilon > 0.0 { epsilon } else { 0.01 * cloud.diagonal() }, cosine }
+    }
+
+    #[inline(always)]
+    pub(super) fn holds(&self, plane: &Plane3, point: [f64; 3], normal: [f64; 3]) -> bool {
+        plane.off(point).abs() <= self.epsilon && dot(plane.normal, normal).abs() >= self.cosine
+    }
+}
+
+/// The pieces found so far.
+#[derive(Debug)]
+pub(super) struct Pieces<'a> {
+    affine: &'a Affine,
+    pub(super) cloud: &'a Cloud,
+    pub(super) tolerance: Tolerance,
+    /// How far the windows that normals are from reach, pixels.
+    reach: usize,
+    planes: Vec<Plane3>,
+    /// For each pixel the number of its piece; 0 for none.
+    image: Vec<u16>,
+    /// For each pixel the last search that reached it.
+    reached: Vec<u32>,
+    search: u32,
+}
+
+impl<'a> Pieces<'a> {
+    /// None yet. Normals are from windows that reach so many pixels.
+    pub(super) fn new(affine: &'a Affine, cloud: &'a Cloud, tolerance: Tolerance, reach: usize) -> Self {
+        let pixels = affine.q.len();
+        let (image, reached) = (vec![0; pixels], vec![0; pixels]);
+        Pieces { affine, cloud, tolerance, reach, planes: Vec::new(), image, reached, search: 0 }
+    }
+
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        self.planes.len()
+    }
+
+    /// Whether a pixel has a point that belongs to no piece.
+    pub(super) fn is_free(&self, at: usize) -> bool {
+        // A comparison with NaN is false.
+        self.image[at] == 0 && self.cloud.points[at][2] > 0.0 && self.cloud.normals[at][2] >= -1.0
+    }
+
+    /// The largest connected piece of free points on the plane that holds one of these; none if a piece has more than
+    /// `most` points.
+    pub(super) fn largest(&mut self, plane: &Plane3, from: &[u32], most: usize) -> Option<Vec<u32>> {
+        self.search += 1;
+        let (mut best, mut piece) = (Vec::new(), Vec::new());
+        for &start in from {
+            piece.clear();
+            self.reach(plane, start, &mut piece);
+            let mut next = 0;
+            while let Some(&at) = piece.get(next) {
+                next += 1;
+                self.affine.neighbours(at as usize).for_each(|beside| self.reach(plane, beside as u32, &mut piece));
+                if piece.len() > most {
+                    return None;
+                }
+            }
+            if piece.len() > best.len() {
+                std::mem::swap(&mut best, &mut piece);
+            }
+        }
+        Some(best)
+    }
+
+    /// Adds a pixel to a piece, if it is on the plane and was not reached before.
+    fn reach(&mut self, plane: &Plane3, at: u32, piece: &mut Vec<u32>) {
+        let pixel = at as usize;
+        let (point, normal) = (self.cloud.points[pixel], self.cloud.normals[pixel]);
+        if self.reached[pixel] != self.search && self.is_free(pixel) && self.tolerance.holds(plane, point, normal) {
+            self.reached[pixel] = self.search;
+            piece.push(at);
+        }
+    }
+
+    /// Takes the piece around these points, its plane fitted to it, unless it has `min` points or fewer. Gives its size.
+    pub(super) fn take(&mut self, plane: &Plane3, from: &[u32], min: usize) -> Option<usize> {
+        let (mut plane, mut piece) = (*plane, self.largest(plane, from, usize::MAX)?);
+        for _ in 0..FITS {
+            let fitted = self.fit(&piece)?;
+            let larger = self.largest(&fitted, &piece, usize::MAX)?;
+            if larger.len() < piece.len() {
+                break;
+            }
+            (plane, piece) = (fitted, larger);
+        }
+        if piece.len() <= min || piece.is_empty() {
+            return None;
+        }
+        self.planes.push(plane);
+        piece.iter().for_each(|&at| self.image[at as usize] = self.planes.len() as u16);
+        Some(piece.len() + self.widen(&plane, piece))
+    }
+
+    /// Gives a piece the points beside it that lie on its plane, as far as windows reach: near an edge they are on two
+    /// surfaces, and normals are those of neither. Gives how many.
+    fn widen(&mut self, plane: &Plane3, piece: Vec<u32>) -> usize {
+        let (number, mut rim, mut count) = (self.planes.len() as u16, piece, 0);
+        // Corners of windows are twice as many steps away.
+        for _ in 0..2 * self.reach {
+            let mut next = Vec::new();
+            for beside in rim.iter().flat_map(|&at| self.affine.neighbours(at as usize)) {
+                let is_near = || plane.off(self.cloud.points[beside]).abs() <= self.tolerance.epsilon;
+                if self.is_free(beside) && is_near() {
+                    self.image[beside] = number;
+                    next.push(beside as u32);
+                }
+            }
+            count += next.len();
+            rim = next;
+        }
+        count
+    }
+
+    /// The least-squares plane of some points.
+    fn fit(&self, piece: &[u32]) -> Option<Plane3> {
+        let origin = *piece.first()? as usize;
+        let ([u0, v0], q0) = (self.affine.place(origin), self.affine.q[origin]);
+        let mut sums = Moments::default();
+        for &at in piece {
+            let [u, v] = self.affine.place(at as usize);
+            sums.add(u - u0, v - v0, self.affine.q[at as usize] - q0);
+        }
+        let [a, b, c] = sums.fit()?.abc;
+        self.cloud.rays.plane([a, b, c + q0 - a * u0 - b * v0])
+    }
+
+    /// The region of every pixel. Points beside a piece that lie on its plane and are in no other are given to it.
+    pub(super) fn finish(self) -> Vec<u16> {
+        let Pieces { affine, cloud, tolerance, planes, mut image, .. } = self;
+        affine.spread(&mut image, |at, piece| {
+            planes[usize::from(piece) - 1].off(cloud.points[at]).abs() <= tolerance.epsilon
+        });
+        image
+    }
+}
