@@ -22,7 +22,7 @@ const WRONG: &[(&[&str], &str)] = &[
     (&["detect", "map.pgm", "--theta", "2"], "`planar` has no parameter `theta`; --method ngaf has it"),
     (&["detect", "map.pgm", "--window", "4"], "--method ngaf has it"),
     (&["explain", "map.pgm", "--at", "1,1", "--margin", "4"], "--method ngaf has it"),
-    (&["detect", "map.pgm", "--method", "ngaf", "--noise", "2"], "--method planar has it"),
+    (&["detect", "map.pgm", "--method", "ngaf", "--noise", "2"], "--method planar or --method mdl has it"),
     (&["detect", "map.pgm", "--method", "magic"], "ngaf"),
     (&["detect", "map.pgm", "--encoding", "furlongs"], "encoding"),
     (&["detect", "map.pgm", "--preset", "eyes"], "preset"),

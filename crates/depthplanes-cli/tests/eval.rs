@@ -49,15 +49,13 @@ fn a_killed_evaluation_goes_on_and_redoes_no_row() {
     let words = ["eval", "scene:room:seed=1-12,size=320x240", "--methods", "planar,ngaf", "--report", "report"];
     let mut child = bench.command().args(words).stdout(std::process::Stdio::null()).spawn().unwrap();
     let start = Instant::now();
-    let kept = loop {
-        let text = std::fs::read_to_string(bench.folder.join("report/rows.jsonl")).unwrap_or_default();
-        if text.lines().count() >= 3 || start.elapsed() > Duration::from_secs(60) {
-            child.kill().unwrap(); // SIGKILL: nothing is tidied up
-            child.wait().unwrap();
-            break std::fs::read_to_string(bench.folder.join("report/rows.jsonl")).unwrap();
-        }
+    let kept = || std::fs::read_to_string(bench.folder.join("report/rows.jsonl")).unwrap_or_default();
+    while kept().lines().count() < 3 && start.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(1));
-    };
+    }
+    child.kill().unwrap(); // SIGKILL: nothing is tidied up
+    child.wait().unwrap();
+    let kept = kept();
     let whole = &kept[..kept.rfind('\n').map_or(0, |end| end + 1)];
     assert!(whole.lines().count() >= 3, "{kept}");
     bench.run(&words).ok();

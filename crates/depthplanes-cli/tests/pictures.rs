@@ -93,6 +93,14 @@ fn the_room_of_the_page_on_outlines_is_what_is_outlined() {
     check("outlines.png", &bench.read("outlines.png"));
 }
 
+#[test]
+fn the_room_of_the_page_on_comparators_is_what_each_finds() {
+    let bench = Bench::new("picture_of_comparators");
+    let scene = "scene:random:sensor=kinect,size=160x120";
+    bench.run(&["compare", scene, "--repeat", "1", "--picture", "compare.png"]).ok();
+    check("compare.png", &bench.read("compare.png"));
+}
+
 fn overlay(method: &'static MethodInfo, frame: &Frame, detection: &Detection) -> Vec<u8> {
     let report = Report {
         source: SCENE,

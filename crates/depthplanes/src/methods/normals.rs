@@ -36,7 +36,7 @@ const PARAMS: &[Param] = &[
     Param {
         name: "angle",
         default: 25.0,
-        min: 0.0,
+        min: 0.1,
         max: 90.0,
         kind: ParamKind::Real,
         unit: "degrees",
@@ -46,7 +46,7 @@ const PARAMS: &[Param] = &[
     Param {
         name: "distance",
         default: 0.03,
-        min: 0.0,
+        min: 1e-6,
         max: f64::MAX,
         kind: ParamKind::Real,
         unit: "m or median depths",

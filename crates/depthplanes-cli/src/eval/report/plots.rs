@@ -102,25 +102,6 @@ pub(in super::super) fn three_measures(rows: &[&Row]) -> Option<Plot> {
     draw(vec![bars.into()], caption, ["", "share"], |layout| from_0_to_1(layout.with_x_tick_rotate(-30.0)))
 }
 
-/// Number of planes by the smallest plane, a line for each map (Fig. 12 and 13).
-pub(in super::super) fn planes_by_min(rows: &[&Row], caption: &str) -> Option<Plot> {
-    let line = |(at, map): (usize, &String)| {
-        let own = rows.iter().filter(|row| row.key.map == *map);
-        let points: Vec<(f64, f64)> =
-            own.filter_map(|row| Some((parameter(row, "min")?, super::found(row)?.planes as f64))).collect();
-        let line = LinePlot::new().with_data(points).with_color(colour(at)).with_stroke_width(2.0);
-        line.with_legend(map.clone()).into()
-    };
-    let plots = in_order(rows.iter().map(|row| row.key.map.as_str())).iter().enumerate().map(line).collect();
-    draw(plots, caption, ["min, pixels", "planes"], |layout| layout.with_y_axis_min(0.0))
-}
-
-/// The value of a parameter of a row.
-fn parameter(row: &Row, name: &str) -> Option<f64> {
-    let mut all = row.key.parameters.split(", ").filter_map(|pair| pair.split_once(' '));
-    all.find(|(other, _)| *other == name)?.1.parse().ok()
-}
-
 fn from_0_to_1(layout: Layout) -> Layout {
     layout.with_y_axis_min(0.0).with_y_axis_max(1.0)
 }

@@ -266,8 +266,13 @@ impl Runner {
         };
         let join = |grouper: &mut Grouper| pieces.join(field, image, grouper);
         finisher.finish_united(&map, &ids, &wanted, join, job, out)?;
-        out.curved = if job.curved { Some(self.find_bent(&map, job, &noise, out.curved.take())?) } else { None };
-        job.done("label");
+        out.curved = match job.curved {
+            true => Some(self.find_bent(&map, job, &noise, out.curved.take())?),
+            false => None,
+        };
+        if job.curved {
+            job.done("label");
+        }
         Ok(())
     }
 
