@@ -16,7 +16,7 @@ fn every_method_has_a_line_and_a_made_up_scene_its_truth() {
         let line = out.lines().map(words).find(|words| words[0] == name);
         line.unwrap_or_else(|| panic!("no {name}: {out}"))
     };
-    assert_eq!(cells("method")[6..], ["ms", "truth", "correct", "F"].map(String::from), "{out}");
+    assert_eq!(cells("method")[7..], ["ms", "truth", "correct", "F"].map(String::from), "{out}");
     for method in METHODS {
         assert_eq!(cells(method.name)[5], "3", "{out}");
     }
