@@ -21,6 +21,7 @@ mod quadratic;
 mod reach;
 mod seams;
 mod settle;
+mod strays;
 #[cfg(test)]
 mod tests;
 mod tiles;
@@ -47,6 +48,7 @@ use pieces::Pieces;
 use planes::Planes;
 use reach::Reach;
 use seams::Seams;
+use strays::Strays;
 use tiles::{LEVELS, Pyramid};
 use turns::Rays;
 
@@ -202,6 +204,7 @@ struct Runner {
     bent: Bent,
     finisher: Finisher,
     pieces: Pieces,
+    strays: Strays,
 }
 
 impl Method for Runner {
@@ -256,7 +259,7 @@ impl Runner {
         watch(Moment::Assigned, self, &noise);
         self.contacts.join(&mut self.regions.all, &mut self.image);
         job.done("assign");
-        let Runner { params, field, image, finisher, pieces, .. } = self;
+        let Runner { params, field, regions, image, finisher, pieces, strays, .. } = self;
         let ids = planes::of_image(image, field)?;
         let wanted = Wanted {
             min: params.min,
@@ -264,7 +267,11 @@ impl Runner {
             noise: Some(&noise),
             valid_pixels: field.valid_pixels,
         };
-        let join = |grouper: &mut Grouper| pieces.join(field, image, grouper);
+        let planes = params.planes(&regions.all, &noise, false);
+        let join = |grouper: &mut Grouper| {
+            pieces.join(field, image, grouper);
+            strays.join(field, image, &planes, params.min, grouper);
+        };
         finisher.finish_united(&map, &ids, &wanted, join, job, out)?;
         out.curved = match job.curved {
             true => Some(self.find_bent(&map, job, &noise, out.curved.take())?),

@@ -1,0 +1,118 @@
+//! Stage "group", third part: what was cut off from its plane goes to the one beside it.
+//!
+//! In: the region image and its groups. Out: fewer groups. The line where two planes meet goes on beyond the end of their
+//! crease, and the plane of a small surface is not known well far from it: behind such a line a few pixels go to a plane
+//! that they have no way to, though they lie on the one around them.
+
+use super::field::Field;
+use super::grid::limit;
+use super::planes::{BENT, Planes};
+use crate::group::{Grouper, Groups, Run, reserve_to};
+
+/// Joins what was cut off; reuses its memory.
+#[derive(Debug, Default)]
+pub(super) struct Strays {
+    /// For each label the pixels of its largest group.
+    largest: Vec<u32>,
+    /// Runs of small groups.
+    runs: Vec<Run>,
+    /// Labels and groups of the pixels beside a stray.
+    beside: Vec<(u16, u32)>,
+    /// The same labels, by how often they are there.
+    often: Vec<(usize, u16)>,
+    /// Groups that are one.
+    pairs: Vec<[u32; 2]>,
+}
+
+impl Strays {
+    /// Joins each group of at most `min` pixels that is not its region's largest to those of the region that it touches
+    /// most, if it lies on that one's plane by the test of tiles.
+    pub(super) fn join(&mut self, field: &Field, image: &[u16], planes: &Planes<'_>, min: u32, grouper: &mut Grouper) {
+        self.list(field, image, min, grouper.groups());
+        let Strays { largest, runs, beside, often, pairs } = self;
+        let groups = grouper.groups();
+        let label = |run: &Run| image[run.v as usize * field.stride + run.u_first as usize];
+        for stray in runs.chunk_by(|a, b| a.group == b.group) {
+            let own = label(&stray[0]);
+            let is_cut_off = groups.sizes()[stray[0].group as usize] < largest[usize::from(own)];
+            if !is_cut_off {
+                continue;
+            }
+            beside.clear();
+            stray.iter().for_each(|run| list_beside(field, image, own, run, groups, beside));
+            // Of two strays each may suit the other's plane.
+            beside.retain(|&(_, group)| groups.sizes()[group as usize] > min);
+            beside.sort_unstable();
+            often.clear();
+            often.extend(beside.chunk_by(|a, b| a.0 == b.0).map(|same| (same.len(), same[0].0)));
+            often.sort_unstable_by(|a, b| b.cmp(a));
+            let suits = |&&(_, label): &&(usize, u16)| lies_on(field, planes, label, stray);
+            if let Some(&(_, label)) = often.iter().find(suits) {
+                let there = beside.iter().filter(|(other, _)| *other == label);
+                pairs.extend(there.map(|&(_, group)| [stray[0].group, group]));
+            }
+        }
+        grouper.unite(pairs);
+    }
+
+    /// Lists the runs of small groups, a group's together, and the largest group of each label.
+    fn list(&mut self, field: &Field, image: &[u16], min: u32, groups: &Groups) {
+        let Strays { largest, runs, beside, often, pairs } = self;
+        reserve_to(runs, image.len());
+        reserve_to(pairs, 2 * image.len());
+        reserve_to(beside, 4 * image.len());
+        reserve_to(often, usize::from(BENT));
+        largest.clear();
+        largest.resize(usize::from(BENT), 0);
+        groups.each_run(|run| {
+            let (label, size) = (image[run.v as usize * field.stride + run.u_first as usize], groups.sizes()[run.group as usize]);
+            let largest = &mut largest[usize::from(label)];
+            *largest = size.max(*largest);
+            if size <= min {
+                runs.push(run);
+            }
+        });
+        runs.sort_unstable_by_key(|run| (run.group, run.v, run.u_first));
+    }
+}
+
+/// Lists the labels and groups of the pixels around a run that have other ones than its own.
+fn list_beside(field: &Field, image: &[u16], own: u16, run: &Run, groups: &Groups, beside: &mut Vec<(u16, u32)>) {
+    let (first, last, v) = (run.u_first as usize, run.u_last as usize, run.v as usize);
+    let mut ask = |u: usize, v: usize| {
+        let label = image[v * field.stride + u];
+        if label != own && label != 0 && label != BENT {
+            beside.push((label, groups.at([u, v])));
+        }
+    };
+    if first > 0 {
+        ask(first - 1, v);
+    }
+    if last + 1 < field.width {
+        ask(last + 1, v);
+    }
+    for u in first..=last {
+        if v > 0 {
+            ask(u, v - 1);
+        }
+        if v + 1 < field.height {
+            ask(u, v + 1);
+        }
+    }
+}
+
+/// Whether the pixels of some runs lie on a region's plane.
+fn lies_on(field: &Field, planes: &Planes<'_>, label: u16, runs: &[Run]) -> bool {
+    let region = planes.region(u32::from(label) - 1);
+    let [mut n, mut squares] = [0.0; 2];
+    for run in runs {
+        let row = run.v as usize * field.stride;
+        for u in run.u_first..=run.u_last {
+            let on_plane = region.at(u.into(), run.v.into());
+            let off = f64::from(field.q[row + u as usize]) - on_plane;
+            squares += off * off / planes.variance(region, on_plane);
+            n += 1.0;
+        }
+    }
+    squares <= f64::from(limit(n as f32, planes.confidence as f32))
+}
