@@ -9,7 +9,7 @@ use super::field::Field;
 use super::grid::{Grid, NONE};
 use super::grow::Region;
 use super::planes::Planes;
-use super::tiles::SIDE;
+use super::tiles::{LANES, SIDE};
 use crate::group::vectorised;
 use crate::parallel::{Rows, in_parts};
 use std::ops::Range;
@@ -381,13 +381,17 @@ impl Rule {
     #[inline(always)]
     fn belied(&self, [one, other]: [&Pixels<f32>; 2]) -> f32 {
         // What it adds to the squares if one of them gets all.
-        let [mut by_one, mut by_other] = [0.0; 2];
-        for at in 0..PIXELS {
-            let more = if is_near_both(one[at], other[at]) { one[at] - other[at] } else { 0.0 };
-            let is_one = self.line(at) > 0.0;
-            by_one += if is_one { 0.0 } else { more };
-            by_other += if is_one { -more } else { 0.0 };
+        let [mut by_one, mut by_other] = [[0.0; LANES]; 2];
+        for first in (0..PIXELS).step_by(LANES) {
+            for lane in 0..LANES {
+                let at = first + lane;
+                let more = if is_near_both(one[at], other[at]) { one[at] - other[at] } else { 0.0 };
+                let is_one = self.line(at) > 0.0;
+                by_one[lane] += if is_one { 0.0 } else { more };
+                by_other[lane] += if is_one { -more } else { 0.0 };
+            }
         }
+        let [by_one, by_other] = [by_one, by_other].map(|sums| sums.iter().sum::<f32>());
         match by_one.min(by_other) {
             least if least > -BELIED => 0.0,
             _ => by_other - by_one,
