@@ -88,6 +88,8 @@ pub(crate) struct Eval {
     pub(crate) methods: Vec<String>,
     /// Parameters given, by flag; each goes to the methods that have it.
     pub(crate) parameters: Vec<(&'static str, f64)>,
+    /// Commands of programs that run other people's methods.
+    pub(crate) peers: Vec<String>,
     /// Folder of sets.
     pub(crate) data: Option<PathBuf>,
     pub(crate) report: PathBuf,
@@ -365,6 +367,10 @@ fn eval_command() -> clap::Command {
                  `depthplanes datasets` lists them",
             ),
             methods_flag([methods::default().name]),
+            Arg::new("peers").long("peers").value_name("COMMAND").action(clap::ArgAction::Append).help(
+                "A program that runs other people's methods on the same maps, such as `make peers` has; \
+                 docs/eval.md says how one is written",
+            ),
             flags::path("data", "DIR").help("Folder of sets"),
             flags::path("report", "DIR").required(true).help("Folder of the report and of what is kept to go on from"),
             flags::count("repeat", "N")
@@ -437,6 +443,7 @@ fn eval(matches: &ArgMatches) -> Eval {
         datasets: texts("datasets"),
         methods: texts("methods"),
         parameters: flags::parameters_given(matches),
+        peers: matches.get_many::<String>("peers").into_iter().flatten().cloned().collect(),
         data: path(matches, "data"),
         report: path(matches, "report").expect("it is required"),
         repeat: count("repeat"),

@@ -18,6 +18,9 @@ use table::Table;
 
 pub(super) use strips::of_maps;
 
+/// The version that our own rows are of.
+const OWN: &str = env!("CARGO_PKG_VERSION");
+
 /// A part of a report.
 #[derive(Default)]
 pub(super) struct Section {
@@ -94,16 +97,18 @@ fn facts(rows: &[&Row]) -> Vec<[String; 2]> {
         values.join("; ")
     };
     let mut facts = vec![
-        ["program".to_string(), all(&|row| format!("depthplanes {}", row.key.version))],
+        ["program".to_string(), format!("depthplanes {OWN}")],
         ["machine".into(), all(&|row| row.machine.clone())],
         ["made on".into(), all(&|row| row.date.clone())],
         ["timed runs a map".into(), all(&|row| row.key.repeat.to_string())],
         ["maps at the same time".into(), all(&|row| row.jobs.to_string())],
     ];
     for label in labels(rows) {
-        let own = rows.iter().filter(|row| row.key.label == label);
-        let values = in_order(own.map(|row| row.key.parameters.as_str()));
-        facts.push([label, values.join(" / ")]);
+        let own = || rows.iter().filter(|row| row.key.label == label);
+        let values = in_order(own().map(|row| row.key.parameters.as_str())).join(" / ");
+        // A peer says whose it is.
+        let whose = in_order(own().map(|row| row.key.version.as_str()).filter(|version| *version != OWN)).join(" / ");
+        facts.push([label, if whose.is_empty() { values } else { format!("{whose}; {values}") }]);
     }
     facts
 }
