@@ -7,9 +7,9 @@
 
 use super::field::Field;
 use super::grid::{Grid, NONE};
-use super::grow::Region;
 use super::planes::Planes;
-use super::tiles::{LANES, SIDE};
+use super::rule::{Rule, is_near_both};
+use super::tiles::SIDE;
 use crate::group::vectorised;
 use crate::parallel::{Rows, in_parts};
 use std::ops::Range;
@@ -21,9 +21,9 @@ const MOST: usize = 12;
 /// Columns and rows of a block.
 const BLOCK: usize = 2 * SIDE;
 /// Pixels of a block.
-const PIXELS: usize = BLOCK * BLOCK;
+pub(super) const PIXELS: usize = BLOCK * BLOCK;
 /// A block's pixels, row by row.
-type Pixels<T> = [T; PIXELS];
+pub(super) type Pixels<T> = [T; PIXELS];
 
 /// Labels every pixel, on as many threads. `grids`: the tiles, and the blocks with the region that their tiles agree on.
 pub(super) fn assign(field: &Field, grids: [&Grid; 2], planes: &Planes<'_>, threads: usize, image: &mut [u16]) {
@@ -213,11 +213,11 @@ struct Block {
 
 /// A plane that some pixels of a block lie on, about the block's middle.
 #[derive(Clone, Copy, Debug, Default)]
-struct Local {
-    id: u32,
-    a: f32,
-    b: f32,
-    c: f32,
+pub(super) struct Local {
+    pub(super) id: u32,
+    pub(super) a: f32,
+    pub(super) b: f32,
+    pub(super) c: f32,
     /// Square of the largest distance of its pixels.
     most: f32,
 }
@@ -243,8 +243,8 @@ impl Default for Scratch {
 /// Half of a block's columns, up to its middle.
 const HALF: f64 = (BLOCK - 1) as f64 / 2.0;
 /// Columns and rows of a block's pixels from its middle.
-const DU: Pixels<f32> = offsets(1);
-const DV: Pixels<f32> = offsets(BLOCK);
+pub(super) const DU: Pixels<f32> = offsets(1);
+pub(super) const DV: Pixels<f32> = offsets(BLOCK);
 
 const fn offsets(step: usize) -> Pixels<f32> {
     let mut out = [0.0; PIXELS];
@@ -324,83 +324,4 @@ impl Block {
 fn overlap(a: &Pixels<f32>, b: &Pixels<f32>) -> bool {
     let both = a.iter().zip(b).fold(0u32, |any, (a, b)| any | u32::from(is_near_both(*a, *b)));
     both > 0
-}
-
-/// A block's pixels are not parted by a line if they lie nearer to one of the planes by so much, squares in units of
-/// [`Local::most`]: by as much, all together, as one pixel may lie off. The line is known no better than the planes,
-/// and beyond the end of a crease it means nothing.
-const BELIED: f32 = 1.0;
-
-/// Which of two planes within reach gets a pixel: the first where the line is positive, or else the nearer.
-struct Rule {
-    by_line: bool,
-    a: f32,
-    b: f32,
-    c: f32,
-}
-
-impl Rule {
-    /// A plane goes before a facet of a curved surface; the line where two planes meet, if it parts them, goes
-    /// before the distances.
-    #[inline(always)]
-    fn between(first: &Region, second: &Region, plane: &Local, other: &Local) -> Rule {
-        if first.is_curved != second.is_curved {
-            return Rule { by_line: true, a: 0.0, b: 0.0, c: if second.is_curved { 1.0 } else { -1.0 } };
-        }
-        let above = |[u, v]: [f64; 2]| first.at(u, v) - second.at(u, v);
-        let (ours, theirs) = (above(first.middle), above(second.middle));
-        let sign = if ours > 0.0 { 1.0 } else { -1.0 };
-        Rule {
-            by_line: ours * theirs < 0.0,
-            a: sign * (plane.a - other.a),
-            b: sign * (plane.b - other.b),
-            c: sign * (plane.c - other.c),
-        }
-    }
-
-    /// Counts for each of two planes the pixels where the other goes before it.
-    #[inline(always)]
-    fn apply(&self, [one, other]: [&Pixels<f32>; 2], one_beaten: &mut Pixels<f32>, other_beaten: &mut Pixels<f32>) {
-        let belied = if self.by_line { self.belied([one, other]) } else { 0.0 };
-        for at in 0..PIXELS {
-            let both = if is_near_both(one[at], other[at]) { 1.0 } else { 0.0 };
-            let by_line = if belied == 0.0 { self.line(at) } else { belied };
-            let difference = if self.by_line { by_line } else { other[at] - one[at] };
-            let wins = if difference > 0.0 { both } else { 0.0 };
-            one_beaten[at] += both - wins;
-            other_beaten[at] += wins;
-        }
-    }
-
-    #[inline(always)]
-    fn line(&self, at: usize) -> f32 {
-        self.a * DU[at] + self.b * DV[at] + self.c
-    }
-
-    /// Whether the block's pixels belie the line: positive if they all should go to the first, negative if to the second.
-    #[inline(always)]
-    fn belied(&self, [one, other]: [&Pixels<f32>; 2]) -> f32 {
-        // What it adds to the squares if one of them gets all.
-        let [mut by_one, mut by_other] = [[0.0; LANES]; 2];
-        for first in (0..PIXELS).step_by(LANES) {
-            for lane in 0..LANES {
-                let at = first + lane;
-                let more = if is_near_both(one[at], other[at]) { one[at] - other[at] } else { 0.0 };
-                let is_one = self.line(at) > 0.0;
-                by_one[lane] += if is_one { 0.0 } else { more };
-                by_other[lane] += if is_one { -more } else { 0.0 };
-            }
-        }
-        let [by_one, by_other] = [by_one, by_other].map(|sums| sums.iter().sum::<f32>());
-        match by_one.min(by_other) {
-            least if least > -BELIED => 0.0,
-            _ => by_other - by_one,
-        }
-    }
-}
-
-/// Whether a pixel is within reach of two planes.
-#[inline(always)]
-fn is_near_both(one: f32, other: f32) -> bool {
-    (one <= 1.0) & (other <= 1.0)
 }

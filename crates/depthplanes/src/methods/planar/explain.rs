@@ -6,7 +6,7 @@
 use super::assign::{self, Held};
 use super::curved::Sign;
 use super::grid::{Grid, NONE};
-use super::grow::{LEAST, Region};
+use super::grow::{Region, fewest};
 use super::planes::BENT;
 use super::{INFO, Moment, Planar, Runner};
 use crate::camera::{Hessian, Measure, Sensor};
@@ -159,7 +159,7 @@ impl Seen {
         self.describe_noise(run);
         for grid in run.pyramid.grids.iter().rev() {
             let at = self.cell(grid);
-            let (n, least) = (f64::from(grid.pixels(at)), f64::from(LEAST) * (grid.side * grid.side) as f64);
+            let (n, least) = (f64::from(grid.pixels(at)), f64::from(fewest(grid)));
             let roughness = f64::from(grid.roughness[at]);
             let first = self.at.map(|place| place / grid.side * grid.side);
             let [u, v] = first.map(|first| format!("{first}..{}", first + grid.side - 1));
@@ -356,7 +356,7 @@ impl Seen {
     fn verdict(&self, run: &Runner, out: &Detection) -> Verdict {
         let label = out.labels[self.at[1] * out.width + self.at[0]];
         let [pixels, roughness] = self.tile;
-        let least = f64::from(LEAST) * (run.pyramid.grids[0].side * run.pyramid.grids[0].side) as f64;
+        let least = f64::from(fewest(&run.pyramid.grids[0]));
         let nearest = self.against.iter().find(|against| !against.is_curved);
         let is_on_curved = self.against.first().is_some_and(|against| against.is_curved && against.off <= self.most);
         if label > 0 {

@@ -7,7 +7,7 @@
 //! taken in order of their own scatter.
 
 use super::grid::{Cell, Grid, NONE, Place};
-use super::tiles::{LEVELS, Pyramid};
+use super::tiles::{LEVELS, Pyramid, SIDE};
 use crate::fit::Moments;
 use crate::group::reserve_to;
 
@@ -16,8 +16,10 @@ use crate::group::reserve_to;
 const SMALL: f64 = 144.0;
 /// A plane is fitted anew when its region has grown by this factor.
 const REFIT: f64 = 1.125;
-/// Fewest pixels of a cell that starts a region, as a share of all.
-pub(super) const LEAST: f32 = 0.5;
+/// Fewest pixels of a tile that starts a region, as a share of all.
+const OF_TILE: f32 = 0.5;
+/// Fewest pixels of a larger cell that starts or joins one: half of a cell may lie in a gap that it would reach over.
+const OF_CELL: f32 = 0.75;
 
 /// Cells on one plane.
 #[derive(Clone, Copy, Debug)]
@@ -164,7 +166,7 @@ impl Regions {
 
     /// Starts regions from the flat cells that are left, the flattest first.
     fn seed(&mut self, grid: &mut Grid, only_flat: bool, confidence: f64) {
-        let least = LEAST * (grid.side * grid.side) as f32;
+        let least = fewest(grid);
         self.seeds.clear();
         for row in 0..grid.rows {
             let mut next = 0;
@@ -221,5 +223,12 @@ impl Regions {
 /// Whether a cell has what it takes to join a region.
 #[inline(always)]
 fn may_join(grid: &Grid, at: usize, only_flat: bool) -> bool {
-    grid.pixels(at) >= 3.0 && !(only_flat && grid.roughness[at] > 1.0)
+    if only_flat { grid.pixels(at) >= fewest(grid) && grid.roughness[at] <= 1.0 } else { grid.pixels(at) >= 3.0 }
+}
+
+/// Fewest pixels of a cell that starts a region.
+#[inline(always)]
+pub(super) fn fewest(grid: &Grid) -> f32 {
+    let share = if grid.side > SIDE { OF_CELL } else { OF_TILE };
+    share * (grid.side * grid.side) as f32
 }

@@ -19,6 +19,7 @@ mod pieces;
 mod planes;
 mod quadratic;
 mod reach;
+mod rule;
 mod seams;
 mod settle;
 mod strays;

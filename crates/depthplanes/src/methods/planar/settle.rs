@@ -10,8 +10,8 @@ use super::grow::Regions;
 use crate::group::reserve_to;
 
 /// Variances by which the other plane has to explain a tile better, so that two pieces of one plane do not trade tiles
-/// for nothing: two deviations.
-const BETTER: f64 = 4.0;
+/// for nothing: three deviations.
+const BETTER: f64 = 9.0;
 /// Standard deviations of a pixel between a plane and the middle of a tile, from which on it is not asked.
 const FAR: f64 = 3.0;
 /// Tiles of a row that are looked at together; a row has a multiple of them.
