@@ -5,6 +5,7 @@
 
 pub(crate) mod datasets;
 mod machine;
+pub(crate) mod paper;
 mod report;
 mod rows;
 mod task;

@@ -6,9 +6,9 @@ use crate::table::{Align, aligned};
 
 /// A table with a heading row.
 pub(in super::super) struct Table {
-    pub(super) title: String,
-    pub(super) head: Vec<String>,
-    pub(super) rows: Vec<Vec<String>>,
+    pub(in super::super) title: String,
+    pub(in super::super) head: Vec<String>,
+    pub(in super::super) rows: Vec<Vec<String>>,
 }
 
 impl Table {

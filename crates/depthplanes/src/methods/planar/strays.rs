@@ -65,7 +65,8 @@ impl Strays {
         largest.clear();
         largest.resize(usize::from(BENT), 0);
         groups.each_run(|run| {
-            let (label, size) = (image[run.v as usize * field.stride + run.u_first as usize], groups.sizes()[run.group as usize]);
+            let (label, size) =
+                (image[run.v as usize * field.stride + run.u_first as usize], groups.sizes()[run.group as usize]);
             let largest = &mut largest[usize::from(label)];
             *largest = size.max(*largest);
             if size <= min {
