@@ -12,13 +12,14 @@ use std::path::Path;
 const RED: [u8; 3] = [205, 30, 30];
 
 /// Figs. 9 and 11: the planes of `ngaf` on each map for each `min`.
-pub(super) fn planes_on_maps(title: &str, folder: &Path, results: &Results<'_>) -> Outcome<Section> {
+pub(super) fn planes_on_maps(title: &str, more: &str, folder: &Path, results: &Results<'_>) -> Outcome<Section> {
     let rows = results.of(NGAF);
     Ok(Section {
         title: title.into(),
-        text: "Number of planes and their share of the valid pixels for each min; the time is that of min 32. In the \
-               pictures what has no plane stays grey."
-            .into(),
+        text: format!(
+            "Number of planes and their share of the valid pixels for each min; the time is that of min 32. In the pictures \
+             what has no plane stays grey.{more}"
+        ),
         tables: vec![counts(title, &rows)],
         strips: results.strips(folder, &rows, None)?,
         ..Section::default()
@@ -48,9 +49,9 @@ fn counts(title: &str, rows: &[&Row]) -> Table {
 /// Figs. 12 and 13: planes against `min`, of `ngaf` on each map and of each method on all.
 pub(super) fn planes_by_min(middlebury: &Results<'_>, kinect: &Results<'_>) -> Section {
     let figure = |results: &Results<'_>, number: &str| {
-        let caption = format!("planes of ngaf by min, a line for each map, as in the paper's Fig. {number}");
+        let caption = format!("Planes of ngaf by min, a line for each map, as in the paper's Fig. {number}");
         let of_maps = plots::planes_by_min(by_map(&results.of(NGAF)), &caption);
-        let of_methods = plots::planes_by_min(by_method(results), "planes by min, mean over the maps, of each method");
+        let of_methods = plots::planes_by_min(by_method(results), "Planes by min, mean over the maps, of each method");
         [of_maps, of_methods].into_iter().filter_map(|plot| results.plot(plot)).collect::<Vec<_>>()
     };
     Section {

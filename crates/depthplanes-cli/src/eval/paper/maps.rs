@@ -111,7 +111,7 @@ pub(super) fn section(sources: &[Source]) -> Section {
     let made_up = sources.iter().filter(|source| source.file.is_none()).count();
     let which = match made_up {
         0 => String::new(),
-        all if all == sources.len() => "\n\nNone of the files is at hand: all maps here are made up.".into(),
+        all if all == sources.len() => "\n\nAll maps here are made up: none of the files is at hand.".into(),
         some => format!("\n\n{some} of the files are not at hand; made-up maps stand in for them."),
     };
     let text = format!(
@@ -122,11 +122,11 @@ pub(super) fn section(sources: &[Source]) -> Section {
          Kinect's nominal camera and noise.{which}"
     );
     let line = |source: &Source| {
-        let scene = || format!("made up: scene:{}", source.map.scene);
-        let from = source.file.as_ref().map_or_else(scene, |_| source.map.file.to_string());
-        vec![source.name(), source.map.set.to_string(), from]
+        let Map { set, file, scene, .. } = source.map;
+        let stand_in = if source.file.is_some() { "-".into() } else { format!("scene:{scene}") };
+        vec![source.name(), set.to_string(), file.to_string(), stand_in]
     };
-    let head = ["map", "set", "from"].map(str::to_string).to_vec();
+    let head = ["map", "set", "file", "stand-in"].map(str::to_string).to_vec();
     let table = Table { title: title.into(), head, rows: sources.iter().map(line).collect() };
     Section { title: title.into(), text, tables: vec![table], ..Section::default() }
 }

@@ -41,11 +41,12 @@ fn named(items: Vec<Item>, set: &str) -> Vec<Item> {
 
 pub(super) fn section(folder: &Path, all: &[&Results<'_>]) -> Outcome<Section> {
     let title = "What these measures hide";
-    let mut text = "Time, number of planes and share of valid points are all that the paper measures, and no plane needs to \
+    let mut text =
+        "Time, number of planes and share of valid points are all that the paper measures, and no plane needs to \
                     be right for any of them. Joining surfaces that meet brings the share up to all points; cutting \
-                    surfaces into pieces brings the number up; both are fast. A plane is correct here if it and one of the \
+                    surfaces into pieces brings the number up. A plane is correct here if it and one of the \
                     truth's cover 80 % of each other (SegComp)."
-        .to_string();
+            .to_string();
     let (mut tables, mut plotted, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
     for results in all {
         let compared = results.compared();
@@ -84,8 +85,8 @@ impl Sum {
     }
 
     fn told(&self) -> String {
-        let Sum { label, planes, correct, share, .. } = self;
-        format!("{label}: {planes} planes on {share:.1} % of the valid pixels, {correct} correct")
+        let Sum { planes, correct, share, .. } = self;
+        format!("{planes} planes on {share:.1} % of the valid pixels, {correct} of them correct")
     }
 }
 
@@ -94,21 +95,21 @@ fn told(results: &Results<'_>, compared: &[&Row]) -> String {
     let labels = in_order(compared.iter().map(|row| row.key.label.as_str()));
     let sums: Vec<Sum> = labels.iter().filter_map(|label| Sum::of(compared, label)).collect();
     let most = |value: fn(&Sum) -> f64| sums.iter().max_by(|a, b| value(a).total_cmp(&value(b)));
-    let mut text = format!("{}, {} maps", capital(results.trial.name), results.trial.items.len());
-    if let Some(ngaf) = Sum::of(compared, &label(NGAF, COMPARED)) {
-        text += &format!(", {} true planes. {}.", ngaf.truth, ngaf.told());
-    }
-    let winners = [
-        ("Most planes", most(|sum| sum.planes as f64)),
-        ("Largest share", most(|sum| sum.share)),
-        ("Most correct planes", most(|sum| sum.correct)),
-    ];
-    for (what, sum) in winners {
-        text += &sum.map_or(String::new(), |sum| format!(" {what}: {}.", sum.told()));
-    }
-    let [first, last] = [MINS[0], MINS[MINS.len() - 1]].map(|min| Sum::of(&results.rows, &label(NGAF, min)));
-    if let Some((small, large)) = first.zip(last) {
-        text += &format!(" The same method, another min: {}; {}.", large.told(), small.told());
+    let truth = sums.first().map_or(0.0, |sum| sum.truth);
+    let (name, maps) = (capital(results.trial.name), results.trial.items.len());
+    let mut text = format!("{name}: {maps} maps with {truth} planes.");
+    let told = [
+        ("", Sum::of(compared, &label(NGAF, COMPARED)).as_ref()),
+        ("Most planes are those of ", most(|sum| sum.planes as f64)),
+        ("The largest share is that of ", most(|sum| sum.share)),
+        ("Most correct planes are those of ", most(|sum| sum.correct)),
+    ]
+    .map(|(what, sum)| sum.map_or(String::new(), |sum| format!(" {what}{}: {}.", sum.label, sum.told())));
+    text += &told.concat();
+    let [small, large] = [MINS[0], MINS[MINS.len() - 1]].map(|min| (min, Sum::of(&results.rows, &label(NGAF, min))));
+    if let ((min, Some(small)), (instead, Some(large))) = (small, large) {
+        let (told, told_instead) = (small.told(), large.told());
+        text += &format!(" {NGAF} with min {min} instead of {instead}: {told}, instead of {told_instead}.");
     }
     text
 }

@@ -11,9 +11,9 @@ pub(in super::super) struct Plot {
 }
 
 impl Plot {
-    /// The same with what it is of before its caption.
+    /// The same with what it is of in its caption.
     pub(in super::super) fn of(self, what: &str) -> Self {
-        Plot { caption: format!("{what}: {}", self.caption), ..self }
+        Plot { caption: format!("{} ({what})", self.caption), ..self }
     }
 }
 
@@ -136,8 +136,11 @@ pub(in super::super) fn planes_by_min(lines: Vec<Line>, caption: &str) -> Option
         let line = LinePlot::new().with_data(points).with_color(colour(at)).with_stroke_width(2.0);
         line.with_legend(name).into()
     };
+    let ends = lines.iter().find_map(|(_, points)| Some([points.first()?.0, points.last()?.0]))?;
     let plots = lines.into_iter().filter(|(_, points)| !points.is_empty()).enumerate().map(line).collect();
-    draw(plots, caption, ["min, pixels", "planes"], |layout| layout.with_log_x().with_log_y())
+    draw(plots, caption, ["min, pixels", "planes"], |layout| {
+        layout.with_log_x().with_log_y().with_x_axis_min(ends[0]).with_x_axis_max(ends[1])
+    })
 }
 
 fn from_0_to_1(layout: Layout) -> Layout {
