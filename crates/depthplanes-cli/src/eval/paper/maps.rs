@@ -13,7 +13,7 @@ pub(super) const KINECT: &str = "Kinect";
 
 /// A map of the paper.
 pub(super) struct Map {
-    set: &'static str,
+    pub(super) set: &'static str,
     pub(super) name: &'static str,
     /// Within the folder of maps.
     file: &'static str,

@@ -105,14 +105,15 @@ fn trials(wanted: &Paper, sources: &[Source], data: Option<&Path>) -> Outcome<[T
     let others = wanted.methods.iter().map(String::as_str).filter(|name| *name != NGAF);
     let methods: Vec<String> = once(NGAF).chain(others).map(str::to_string).collect();
     let entries = |settings| entries(&methods, settings, wanted.threads);
-    let compared = |settings| {
+    // Each method with the `min` of the comparison, `ngaf` with all.
+    let compared = |settings| -> Outcome<Vec<Entry>> {
         let is_shown = |entry: &Entry| entry.recipe.method.name == NGAF || is_compared(&entry.label);
-        Ok::<_, crate::failure::Failure>(entries(settings)?.into_iter().filter(is_shown).collect())
+        Ok(entries(settings)?.into_iter().filter(is_shown).collect())
     };
     Ok([
         Trial { name: MIDDLEBURY, items: maps::items(sources, MIDDLEBURY), entries: entries(CLEAN)? },
         Trial { name: KINECT, items: maps::items(sources, KINECT), entries: entries(SENSOR)? },
-        Trial { name: truth::DISPARITY, items: truth::disparity(data)?, entries: compared(CLEAN)? },
+        Trial { name: truth::DISPARITY, items: truth::disparity(sources, data)?, entries: compared(CLEAN)? },
         Trial { name: truth::DEPTH, items: truth::depth()?, entries: compared(SENSOR)? },
     ])
 }

@@ -4,6 +4,7 @@ use super::super::datasets::{self, Item};
 use super::super::report::plots;
 use super::super::report::{Section, by, in_order, mean, share, strips, table};
 use super::super::rows::{Found, Row};
+use super::maps::{MIDDLEBURY, Source};
 use super::{COMPARED, MINS, NGAF, Results, label};
 use crate::failure::Outcome;
 use std::path::Path;
@@ -16,10 +17,10 @@ const SCENES: [&str; 4] = ["planes3:", "stairs:", "curved:", "random:seed=1-2,"]
 /// Strips of a trial.
 const STRIPS: usize = 4;
 
-/// Made-up maps of a stereo pair, and Middlebury's maps whose planes are known, if they are there.
-pub(super) fn disparity(data: Option<&Path>) -> Outcome<Vec<Item>> {
+/// Made-up maps of a stereo pair, and those of Middlebury's maps whose planes are known, where Middlebury's are at hand.
+pub(super) fn disparity(sources: &[Source], data: Option<&Path>) -> Outcome<Vec<Item>> {
     let mut items = scenes("sensor=disparity,size=450x375")?;
-    if data.is_some_and(|data| data.join("middlebury").is_dir()) {
+    if sources.iter().any(|source| source.map.set == MIDDLEBURY && source.file.is_some()) {
         items.extend(datasets::find("middlebury", data)?.into_iter().filter(|item| item.truth.is_some()));
     }
     Ok(named(items, DISPARITY))
@@ -51,7 +52,6 @@ pub(super) fn section(folder: &Path, all: &[&Results<'_>]) -> Outcome<Section> {
     for results in all {
         let compared = results.compared();
         text += &format!("\n\n{}", told(results, &compared));
-        // Each method with the `min` of the comparison, `ngaf` with all.
         tables.push(table::of(results.trial.name, &results.rows));
         let plots = [plots::correct_by_count(&compared), plots::correct_by_tolerance(&compared)];
         plotted.extend(plots.into_iter().filter_map(|plot| results.plot(plot)));

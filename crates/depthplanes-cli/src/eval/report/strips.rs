@@ -50,7 +50,8 @@ fn strip(folder: &Path, rows: &[&Row], item: &Item, rest: Option<[u8; 3]>) -> Ou
     for row in rows.iter().filter(|row| row.key.dataset == item.dataset && row.key.map == item.name) {
         let Some(found) = found(row) else { continue };
         let labels = read_labels(folder.join(&found.labels), &DecodeOptions::default())?;
-        let caption = format!("{}: {} planes", row.key.label, found.planes);
+        let planes = if found.planes == 1 { "plane" } else { "planes" };
+        let caption = format!("{}: {} {planes}", row.key.label, found.planes);
         pictures.push(Picture { caption, png: tinted_png(&frame, &labels.labels, rest, WIDTH)? });
     }
     Ok(Strip { title: item.name.clone(), pictures })
