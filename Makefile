@@ -1,5 +1,5 @@
 # People and CI call these targets and nothing else. `make help` lists them.
-# Everything that is made goes into the checkout: target/, .venv/, out/, fuzz/.
+# Everything that is made goes into the checkout: target/, .venv/, .venv-peers/, out/, fuzz/.
 
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
@@ -11,17 +11,25 @@ CARGO ?= cargo
 PYTHON ?= python3
 FUZZ_SECONDS ?= 30
 ROUNDS ?= 31
+# Folder of the sets of `eval`, those of its sets with a truth that are there, runs of each method on each map.
+DATA ?= ../shared/data
+set = $(if $(wildcard $(DATA)/$(2)),$(1))
+SETS ?= $(call set,segcomp-abw,gt_segcomp_abw) $(call set,middlebury,middlebury) $(call set,synpeb,gt_synpeb) \
+	$(call set,evops,gt_evops) $(call set,nyu-dpd,gt_nyu_dpd) $(call set,sr4000,gt_sr4000_dpd) \
+	scene:random:seed=201-206,sensor=kinect scene:random:seed=201-206,sensor=tof
+REPEAT ?= 3
 # Name of this machine's folder of benchmark records.
 MACHINE ?= $(shell scripts/machine)
 
 VENV := .venv/ready
 PY := .venv/bin/python
+PEERS := .venv-peers/ready
 CARGO_FUZZ := target/tools/bin/cargo-fuzz
 
 say = @printf '\n== %s\n' '$(1)'
 
 .NOTPARALLEL:
-.PHONY: help demo test lint fmt format clippy rust-tests rustdoc oracles bench bench-planar tables golden fuzz clean
+.PHONY: help demo test lint fmt format clippy rust-tests rustdoc oracles bench bench-planar tables peers golden fuzz clean
 
 help: ## List the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -78,6 +86,11 @@ tables: $(VENV) ## Write docs/paper-tables.md: the paper's tables on the same ma
 	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes-cli
 	$(PY) benchmarks/paper_tables.py
 
+peers: $(PEERS) ## Run Open3D, pyransac3d and cc3d beside ours on SETS; writes out/peers/report.html
+	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes-cli
+	target/release/depthplanes eval $(SETS) --data '$(DATA)' --methods planar,ngaf,ransac \
+		--peers '.venv-peers/bin/python benchmarks/peers.py' --repeat $(REPEAT) --report out/peers
+
 golden: ## Write golden files, the outputs shown in the docs and their pictures anew; look at the difference
 	DEPTHPLANES_GOLDEN=update $(CARGO) test --workspace
 	git status --short
@@ -92,13 +105,18 @@ fmt: ## Format the code
 	@if scripts/component rustfmt; then $(CARGO) fmt --all; else exit 1; fi
 
 clean: ## Remove everything that was made
-	rm -rf target .venv out fuzz/target
+	rm -rf target .venv .venv-peers out fuzz/target
 	find . -name __pycache__ -o -name .pytest_cache | xargs rm -rf
 
 # Anew when the packages change, or when an earlier attempt did not finish.
 $(VENV): tests/oracles/requirements.txt tests/oracles/requirements-alone.txt
 	$(call say,Python packages into .venv)
-	@scripts/venv '$(PYTHON)' $^
+	@scripts/venv .venv '$(PYTHON)' $^
+	@touch $@
+
+$(PEERS): benchmarks/peers-requirements.txt
+	$(call say,Open3D and other peers into .venv-peers)
+	@scripts/peers '$(PYTHON)' $<
 	@touch $@
 
 $(CARGO_FUZZ):

@@ -27,6 +27,8 @@ pub(crate) struct Eval {
     pub(crate) methods: Vec<String>,
     /// Parameters given, by flag; each goes to the methods that have it.
     pub(crate) parameters: Vec<(&'static str, f64)>,
+    /// Commands of programs that run other people's methods.
+    pub(crate) peers: Vec<String>,
     /// Folder of sets.
     pub(crate) data: Option<PathBuf>,
     pub(crate) report: PathBuf,
@@ -83,6 +85,10 @@ pub(super) fn eval_command() -> clap::Command {
                  `depthplanes datasets` lists them",
             ),
             methods_flag([methods::default().name]),
+            Arg::new("peers").long("peers").value_name("COMMAND").action(clap::ArgAction::Append).help(
+                "A program that runs other people's methods on the same maps, such as `make peers` has; \
+                 docs/eval.md says how one is written",
+            ),
             flags::path("data", "DIR").help("Folder of sets"),
         ])
         .args(report_flags())
@@ -135,6 +141,7 @@ pub(super) fn eval(matches: &ArgMatches) -> Eval {
         datasets: texts("datasets"),
         methods: texts("methods"),
         parameters: flags::parameters_given(matches),
+        peers: matches.get_many::<String>("peers").into_iter().flatten().cloned().collect(),
         data: path(matches, "data"),
         report: path(matches, "report").expect("it is required"),
         repeat: count("repeat"),

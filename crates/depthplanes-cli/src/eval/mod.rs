@@ -6,6 +6,7 @@
 pub(crate) mod datasets;
 mod machine;
 pub(crate) mod paper;
+mod peers;
 mod report;
 mod rows;
 mod task;
@@ -20,7 +21,7 @@ use report::Section;
 use rows::{Key, Row, Store};
 use std::io::Write;
 use std::path::Path;
-use task::Task;
+use task::{Maker, Task};
 
 /// Folder of the label images within the report's.
 const LABELS: &str = "labels";
@@ -46,8 +47,12 @@ pub(crate) fn run(wanted: &Eval, out: &mut dyn Write) -> Outcome {
     let entries: Vec<Entry> = recipes.into_iter().map(entry).collect();
     let items = items(&wanted.datasets, wanted.data.as_deref())?;
     let pace = Pace { repeat: wanted.repeat, jobs: wanted.jobs };
-    let store = make(&tasks(&items, &entries, pace.repeat), pace, &wanted.report)?;
-    let tasks = tasks(&items, &entries, pace.repeat);
+    let peers = peers::find(&wanted.peers, wanted.threads)?;
+    let mut tasks = tasks(&items, &entries, pace.repeat);
+    tasks.extend(peers::tasks(&items, &peers, pace.repeat));
+    // The methods of a map together: what else the machine does in the meantime meets all of them.
+    tasks.sort_by_key(|task| std::ptr::from_ref(task.item));
+    let store = make(&tasks, pace, &wanted.report)?;
     let rows: Vec<&Row> = tasks.iter().filter_map(|task| store.get(&task.key)).collect();
     let sections = report::by_dataset(&wanted.report, &rows, &items)?;
     finish("Evaluation", &wanted.report, &rows, &sections, out)
@@ -89,7 +94,7 @@ fn tasks<'a>(items: &'a [Item], entries: &'a [Entry], repeat: usize) -> Vec<Task
             version: env!("CARGO_PKG_VERSION").into(),
             repeat,
         };
-        Task { item, recipe: &entry.recipe, key }
+        Task { item, maker: Maker::Recipe(&entry.recipe), key }
     };
     items.iter().flat_map(|item| entries.iter().map(move |entry| (item, entry))).map(task).collect()
 }

@@ -3,6 +3,7 @@
 use super::LABELS;
 use super::datasets::{Item, TruthOf};
 use super::machine;
+use super::peers::Peer;
 use super::rows::{Found, Key, Made, Row, Store};
 use crate::failure::{Failure, Outcome};
 use crate::measures::{MEASURES, Scores};
@@ -10,15 +11,39 @@ use crate::run::{Recipe, Runner};
 use depthplanes::Detection;
 use depthplanes::metrics::{Contingency, Tolerance, evops, plane_errors, segcomp};
 use depthplanes_io::Frame;
-use depthplanes_io::outputs::{grey16_png, write_file};
+use depthplanes_io::outputs::{Spread, grey16_png, write_file};
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A map and a method.
 pub(super) struct Task<'a> {
     pub(super) item: &'a Item,
-    pub(super) recipe: &'a Recipe,
+    pub(super) maker: Maker<'a>,
     pub(super) key: Key,
+}
+
+/// Who finds the planes.
+pub(super) enum Maker<'a> {
+    Recipe(&'a Recipe),
+    Peer(&'a Peer),
+}
+
+impl Maker<'_> {
+    /// What it finds and how long it takes, or why it refuses.
+    ///
+    /// # Errors
+    /// A peer that does not work.
+    fn detect(&self, frame: &Frame, repeat: usize) -> Outcome<Result<(Detection, Spread), String>> {
+        match self {
+            Maker::Recipe(recipe) => {
+                let found = Runner::new(recipe).detect(frame, repeat);
+                Ok(found
+                    .map(|found| (found.detection, found.times.unwrap_or_default().total))
+                    .map_err(|f| f.to_string()))
+            }
+            Maker::Peer(peer) => peer.detect(frame, repeat),
+        }
+    }
 }
 
 /// SegComp tolerances of the curve.
@@ -36,15 +61,15 @@ impl Task<'_> {
     /// Its row.
     ///
     /// # Errors
-    /// A map or a truth that cannot be read, a disk that refuses; not what the method itself refuses.
+    /// A map or a truth that cannot be read, a disk that refuses, a peer that does not work; not what the method itself
+    /// refuses.
     pub(super) fn run(&self, folder: &Path, machine: &str, jobs: usize) -> Outcome<Row> {
         let frame = (self.item.frame)().map_err(|failure| failure.of_input(&self.item.name))?;
         let valid_pixels = valid_pixels(&frame)?;
-        let outcome = match Runner::new(self.recipe).detect(&frame, self.key.repeat) {
-            Ok(found) => {
-                let times = found.times.unwrap_or_default().total;
+        let found = self.maker.detect(&frame, self.key.repeat).map_err(|failure| failure.of_input(&self.item.name))?;
+        let outcome = match found {
+            Ok((detection, times)) => {
                 let labels = self.labels_file();
-                let detection = &found.detection;
                 write_file(&folder.join(&labels), &grey16_png(frame.width, frame.height, &detection.labels))?;
                 let mut made = Found {
                     planes: detection.planes.len(),
@@ -57,11 +82,11 @@ impl Task<'_> {
                     normal_error_deg: None,
                 };
                 if let Some(truth) = &self.item.truth {
-                    score(&truth()?, detection, &mut made).map_err(|failure| failure.of_input(&self.item.name))?;
+                    score(&truth()?, &detection, &mut made).map_err(|failure| failure.of_input(&self.item.name))?;
                 }
                 Made::Found(made)
             }
-            Err(failure) => Made::Refused(failure.to_string()),
+            Err(why) => Made::Refused(why),
         };
         let size = [frame.width, frame.height];
         let (key, machine, date) = (self.key.clone(), machine.to_string(), machine::today());

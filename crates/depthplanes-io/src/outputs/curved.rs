@@ -1,6 +1,6 @@
 //! The label image of curved regions: 0 where there is none, otherwise the region's label, 16 bits.
 
-use super::labels::npy_of;
+use super::npy::npy_of;
 use super::picture::grey16_png;
 use super::{Output, OutputError, Report, Writer};
 use depthplanes::detection::Curved;

@@ -16,6 +16,9 @@ use std::path::Path;
 use strips::Strip;
 use table::Table;
 
+/// The version that our own rows are of.
+const OWN: &str = env!("CARGO_PKG_VERSION");
+
 /// A part of a report.
 #[derive(Default)]
 pub(super) struct Section {
@@ -97,16 +100,19 @@ fn facts(rows: &[&Row]) -> Vec<[String; 2]> {
         values.join("; ")
     };
     let mut facts = vec![
-        ["program".to_string(), all(&|row| format!("depthplanes {}", row.key.version))],
+        ["program".to_string(), format!("depthplanes {OWN}")],
         ["machine".into(), all(&|row| row.machine.clone())],
         ["made on".into(), all(&|row| row.date.clone())],
         ["timed runs a map".into(), all(&|row| row.key.repeat.to_string())],
         ["maps at the same time".into(), all(&|row| row.jobs.to_string())],
     ];
     for method in in_order(rows.iter().map(|row| row.key.method.as_str())) {
-        let own = rows.iter().filter(|row| row.key.method == method);
-        let values = values(&in_order(own.map(|row| row.key.parameters.as_str())));
-        facts.push([method, values]);
+        let own = || rows.iter().filter(|row| row.key.method == method);
+        let written = in_order(own().map(|row| row.key.parameters.as_str()));
+        // A peer says whose it is.
+        let whose = in_order(own().map(|row| row.key.version.as_str()).filter(|version| *version != OWN)).join(" / ");
+        let said = if whose.is_empty() { values(&written) } else { format!("{whose}; {}", written.join(" / ")) };
+        facts.push([method, said]);
     }
     facts
 }

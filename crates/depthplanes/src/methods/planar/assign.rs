@@ -9,7 +9,7 @@ use super::field::Field;
 use super::grid::{Grid, NONE};
 use super::grow::Region;
 use super::planes::Planes;
-use super::tiles::SIDE;
+use super::tiles::{LANES, SIDE};
 use crate::group::vectorised;
 use crate::parallel::{Rows, in_parts};
 use std::ops::Range;
@@ -322,9 +322,14 @@ impl Block {
 /// Whether some pixels are within reach of both of two planes.
 #[inline(always)]
 fn overlap(a: &Pixels<f32>, b: &Pixels<f32>) -> bool {
-    let both = a.iter().zip(b).fold(0u32, |any, (a, b)| any | u32::from((*a <= 1.0) & (*b <= 1.0)));
+    let both = a.iter().zip(b).fold(0u32, |any, (a, b)| any | u32::from(is_near_both(*a, *b)));
     both > 0
 }
+
+/// A block's pixels are not parted by a line if they lie nearer to one of the planes by so much, squares in units of
+/// [`Local::most`]: by as much, all together, as one pixel may lie off. The line is known no better than the planes,
+/// and beyond the end of a crease it means nothing.
+const BELIED: f32 = 1.0;
 
 /// Which of two planes within reach gets a pixel: the first where the line is positive, or else the nearer.
 struct Rule {
@@ -356,13 +361,46 @@ impl Rule {
     /// Counts for each of two planes the pixels where the other goes before it.
     #[inline(always)]
     fn apply(&self, [one, other]: [&Pixels<f32>; 2], one_beaten: &mut Pixels<f32>, other_beaten: &mut Pixels<f32>) {
+        let belied = if self.by_line { self.belied([one, other]) } else { 0.0 };
         for at in 0..PIXELS {
-            let both = if (one[at] <= 1.0) & (other[at] <= 1.0) { 1.0 } else { 0.0 };
-            let line = self.a * DU[at] + self.b * DV[at] + self.c;
-            let difference = if self.by_line { line } else { other[at] - one[at] };
+            let both = if is_near_both(one[at], other[at]) { 1.0 } else { 0.0 };
+            let by_line = if belied == 0.0 { self.line(at) } else { belied };
+            let difference = if self.by_line { by_line } else { other[at] - one[at] };
             let wins = if difference > 0.0 { both } else { 0.0 };
             one_beaten[at] += both - wins;
             other_beaten[at] += wins;
         }
     }
+
+    #[inline(always)]
+    fn line(&self, at: usize) -> f32 {
+        self.a * DU[at] + self.b * DV[at] + self.c
+    }
+
+    /// Whether the block's pixels belie the line: positive if they all should go to the first, negative if to the second.
+    #[inline(always)]
+    fn belied(&self, [one, other]: [&Pixels<f32>; 2]) -> f32 {
+        // What it adds to the squares if one of them gets all.
+        let [mut by_one, mut by_other] = [[0.0; LANES]; 2];
+        for first in (0..PIXELS).step_by(LANES) {
+            for lane in 0..LANES {
+                let at = first + lane;
+                let more = if is_near_both(one[at], other[at]) { one[at] - other[at] } else { 0.0 };
+                let is_one = self.line(at) > 0.0;
+                by_one[lane] += if is_one { 0.0 } else { more };
+                by_other[lane] += if is_one { -more } else { 0.0 };
+            }
+        }
+        let [by_one, by_other] = [by_one, by_other].map(|sums| sums.iter().sum::<f32>());
+        match by_one.min(by_other) {
+            least if least > -BELIED => 0.0,
+            _ => by_other - by_one,
+        }
+    }
+}
+
+/// Whether a pixel is within reach of two planes.
+#[inline(always)]
+fn is_near_both(one: f32, other: f32) -> bool {
+    (one <= 1.0) & (other <= 1.0)
 }

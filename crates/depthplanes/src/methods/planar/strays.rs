@@ -12,9 +12,7 @@ use crate::group::{Grouper, Groups, Run, reserve_to};
 /// Joins what was cut off; reuses its memory.
 #[derive(Debug, Default)]
 pub(super) struct Strays {
-    /// For each label the pixels of its largest group.
-    largest: Vec<u32>,
-    /// Runs of small groups.
+    /// Runs of small groups, a group's together.
     runs: Vec<Run>,
     /// Labels and groups of the pixels beside a stray.
     beside: Vec<(u16, u32)>,
@@ -25,17 +23,17 @@ pub(super) struct Strays {
 }
 
 impl Strays {
-    /// Joins each group of at most `min` pixels that is not its region's largest to those of the region that it touches
+    /// Joins each group of at most `min` pixels that is less than half of its region to those of the region that it touches
     /// most, if it lies on that one's plane by the test of tiles.
     pub(super) fn join(&mut self, field: &Field, image: &[u16], planes: &Planes<'_>, min: u32, grouper: &mut Grouper) {
-        self.list(field, image, min, grouper.groups());
-        let Strays { largest, runs, beside, often, pairs } = self;
+        self.list(field, min, grouper.groups());
+        let Strays { runs, beside, often, pairs } = self;
         let groups = grouper.groups();
         let label = |run: &Run| image[run.v as usize * field.stride + run.u_first as usize];
         for stray in runs.chunk_by(|a, b| a.group == b.group) {
             let own = label(&stray[0]);
-            let is_cut_off = groups.sizes()[stray[0].group as usize] < largest[usize::from(own)];
-            if !is_cut_off {
+            let pixels = f64::from(groups.sizes()[stray[0].group as usize]);
+            if 2.0 * pixels >= planes.region(u32::from(own) - 1).sums.n {
                 continue;
             }
             beside.clear();
@@ -55,21 +53,14 @@ impl Strays {
         grouper.unite(pairs);
     }
 
-    /// Lists the runs of small groups, a group's together, and the largest group of each label.
-    fn list(&mut self, field: &Field, image: &[u16], min: u32, groups: &Groups) {
-        let Strays { largest, runs, beside, often, pairs } = self;
-        reserve_to(runs, image.len());
-        reserve_to(pairs, 2 * image.len());
-        reserve_to(beside, 4 * image.len());
+    fn list(&mut self, field: &Field, min: u32, groups: &Groups) {
+        let (pixels, Strays { runs, beside, often, pairs }) = (field.width * field.height, self);
+        reserve_to(runs, pixels);
+        reserve_to(beside, 4 * pixels);
         reserve_to(often, usize::from(BENT));
-        largest.clear();
-        largest.resize(usize::from(BENT), 0);
+        reserve_to(pairs, 4 * pixels);
         groups.each_run(|run| {
-            let (label, size) =
-                (image[run.v as usize * field.stride + run.u_first as usize], groups.sizes()[run.group as usize]);
-            let largest = &mut largest[usize::from(label)];
-            *largest = size.max(*largest);
-            if size <= min {
+            if groups.sizes()[run.group as usize] <= min {
                 runs.push(run);
             }
         });
