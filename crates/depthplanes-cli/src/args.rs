@@ -5,6 +5,7 @@
 //! flag here.
 
 mod flags;
+mod several;
 
 use clap::{Arg, ArgMatches, builder::PossibleValuesParser, value_parser};
 use depthplanes::Coplanar;
@@ -17,6 +18,7 @@ use std::path::PathBuf;
 
 pub(crate) use clap_complete::Shell;
 pub(crate) use flags::Reading;
+pub(crate) use several::{Compare, Eval, Paper};
 
 /// What the user wants.
 pub(crate) enum Command {
@@ -26,6 +28,7 @@ pub(crate) enum Command {
     Noise { inputs: Vec<OsString>, reading: Box<Reading>, json: bool },
     Score(Score),
     Eval(Eval),
+    Paper(Paper),
     Compare(Box<Compare>),
     Datasets,
     Demo { out_dir: PathBuf },
@@ -82,36 +85,6 @@ pub(crate) struct Score {
     pub(crate) json: bool,
 }
 
-/// `depthplanes eval`.
-pub(crate) struct Eval {
-    pub(crate) datasets: Vec<String>,
-    pub(crate) methods: Vec<String>,
-    /// Parameters given, by flag; each goes to the methods that have it.
-    pub(crate) parameters: Vec<(&'static str, f64)>,
-    /// Commands of programs that run other people's methods.
-    pub(crate) peers: Vec<String>,
-    /// Folder of sets.
-    pub(crate) data: Option<PathBuf>,
-    pub(crate) report: PathBuf,
-    pub(crate) repeat: usize,
-    pub(crate) jobs: usize,
-    pub(crate) threads: usize,
-}
-
-/// `depthplanes compare`.
-pub(crate) struct Compare {
-    pub(crate) input: OsString,
-    pub(crate) reading: Reading,
-    pub(crate) methods: Vec<String>,
-    /// Parameters given, by flag; each goes to the methods that have it.
-    pub(crate) parameters: Vec<(&'static str, f64)>,
-    pub(crate) truth: Option<PathBuf>,
-    pub(crate) truth_from: u16,
-    pub(crate) picture: Option<PathBuf>,
-    pub(crate) repeat: usize,
-    pub(crate) threads: usize,
-}
-
 /// Parses the command line; on wrong use, or where help is asked for, it prints and exits.
 pub(crate) fn parse() -> Command {
     let matches = program().get_matches();
@@ -130,8 +103,9 @@ pub(crate) fn parse() -> Command {
             json: matches.get_flag("json"),
         },
         "score" => Command::Score(score(matches)),
-        "eval" => Command::Eval(eval(matches)),
-        "compare" => Command::Compare(Box::new(compare(matches))),
+        "eval" => Command::Eval(several::eval(matches)),
+        "paper" => Command::Paper(several::paper(matches)),
+        "compare" => Command::Compare(Box::new(several::compare(matches))),
         "datasets" => Command::Datasets,
         "demo" => Command::Demo { out_dir: path(matches, "out-dir").expect("it has a default") },
         "methods" => Command::Methods,
@@ -191,8 +165,9 @@ fn program() -> clap::Command {
             inspect_command(),
             noise_command(),
             score_command(),
-            compare_command(),
-            eval_command(),
+            several::compare_command(),
+            several::eval_command(),
+            several::paper_command(),
             clap::Command::new("datasets")
                 .about("Lists the sets of maps that `eval` knows, and how their folders have to look"),
             demo_command(),
@@ -331,59 +306,6 @@ fn score_command() -> clap::Command {
         ])
 }
 
-/// Some methods, all of them or one by default.
-fn methods_flag(default: impl IntoIterator<Item = &'static str>) -> Arg {
-    let names = METHODS.iter().map(|method| method.name);
-    let flag = Arg::new("methods").long("methods").value_name("A,B,..").value_delimiter(',');
-    flag.value_parser(PossibleValuesParser::new(names)).default_values(default).help("Methods to run")
-}
-
-fn compare_command() -> clap::Command {
-    let input = Arg::new("input").value_name("INPUT").required(true).value_parser(value_parser!(OsString));
-    clap::Command::new("compare")
-        .about("Runs several methods on one map: a table, and a picture of all side by side")
-        .after_help(EXIT_CODES)
-        .arg(input.help("A file, - for standard input, or scene:SPEC for a made-up scene, which knows its truth"))
-        .args(flags::reading())
-        .arg(methods_flag(METHODS.iter().map(|method| method.name)))
-        .args(flags::method_parameters())
-        .args([
-            flags::path("picture", "FILE").help("Write the picture of all side by side (.png)"),
-            flags::path("truth", "FILE")
-                .help("Label image of the truth: adds scores to the table, and the truth to the picture"),
-            flags::label("truth-from", "LABEL").default_value("1").help("The lowest truth label that is a plane"),
-            flags::count("repeat", "N").default_value("5").help("Timed runs of each method, after a warm-up"),
-            flags::count("threads", "N").default_value("1").help("Threads for each map"),
-        ])
-}
-
-fn eval_command() -> clap::Command {
-    clap::Command::new("eval")
-        .about("Runs methods over sets of maps and writes a report; started again, it goes on where it was interrupted")
-        .after_help(EXIT_CODES)
-        .args([
-            Arg::new("datasets").value_name("SET").required(true).num_args(1..).help(
-                "A set in the folder of sets, NAME=DIR, or scene:SPEC (seed=1-20 for twenty seeds); \
-                 `depthplanes datasets` lists them",
-            ),
-            methods_flag([methods::default().name]),
-            Arg::new("peers").long("peers").value_name("COMMAND").action(clap::ArgAction::Append).help(
-                "A program that runs other people's methods on the same maps, such as `make peers` has; \
-                 docs/eval.md says how one is written",
-            ),
-            flags::path("data", "DIR").help("Folder of sets"),
-            flags::path("report", "DIR").required(true).help("Folder of the report and of what is kept to go on from"),
-            flags::count("repeat", "N")
-                .default_value("3")
-                .help("Timed runs of each method on each map, after a warm-up"),
-            flags::count("jobs", "N")
-                .default_value("1")
-                .help("Maps worked on at the same time; times are truest with one"),
-            flags::count("threads", "N").default_value("1").help("Threads for each map"),
-        ])
-        .args(flags::method_parameters())
-}
-
 fn demo_command() -> clap::Command {
     let folder = flags::path("out-dir", "DIR").default_value("depthplanes-demo").help("Where the files go");
     clap::Command::new("demo").about("Runs a made-up scene through the whole pipeline").arg(folder)
@@ -416,37 +338,6 @@ fn detect(matches: &ArgMatches) -> Detect {
         json: matches.get_flag("json"),
         rows: count("rows"),
         repeat: matches.get_one("repeat").copied().unwrap_or(0),
-        jobs: count("jobs"),
-        threads: count("threads"),
-    }
-}
-
-fn compare(matches: &ArgMatches) -> Compare {
-    let count = |name| *matches.get_one::<usize>(name).expect("it has a default");
-    Compare {
-        input: matches.get_one::<OsString>("input").cloned().expect("it is required"),
-        reading: Reading::from_matches(matches),
-        methods: matches.get_many::<String>("methods").expect("it has a default").cloned().collect(),
-        parameters: flags::parameters_given(matches),
-        truth: path(matches, "truth"),
-        truth_from: *matches.get_one("truth-from").expect("it has a default"),
-        picture: path(matches, "picture"),
-        repeat: count("repeat"),
-        threads: count("threads"),
-    }
-}
-
-fn eval(matches: &ArgMatches) -> Eval {
-    let texts = |name| matches.get_many::<String>(name).expect("it has a value").cloned().collect();
-    let count = |name| *matches.get_one::<usize>(name).expect("it has a default");
-    Eval {
-        datasets: texts("datasets"),
-        methods: texts("methods"),
-        parameters: flags::parameters_given(matches),
-        peers: matches.get_many::<String>("peers").into_iter().flatten().cloned().collect(),
-        data: path(matches, "data"),
-        report: path(matches, "report").expect("it is required"),
-        repeat: count("repeat"),
         jobs: count("jobs"),
         threads: count("threads"),
     }

@@ -26,6 +26,7 @@ pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
         Command::Score(wanted) => score::run(wanted, out),
         Command::Compare(wanted) => compare::run(wanted, out),
         Command::Eval(wanted) => crate::eval::run(wanted, out),
+        Command::Paper(wanted) => crate::eval::paper::run(wanted, out),
         Command::Datasets => lists::datasets(out),
         Command::Demo { out_dir } => demo::run(out_dir, out),
         Command::Methods => lists::methods(out),

@@ -5,6 +5,7 @@
 
 pub(crate) mod datasets;
 mod machine;
+pub(crate) mod paper;
 mod peers;
 mod report;
 mod rows;

@@ -7,15 +7,20 @@ use super::{OutputError, font, shade};
 use crate::Frame;
 
 /// A PNG of at most `width` columns: the map in grey, each label (1 and up) in a colour of its own. `labels` has an entry
-/// for each pixel of the map, row by row.
+/// for each pixel of the map, row by row. Pixels with a value and without a label are in the colour `rest`, if there is one.
 ///
 /// # Errors
 /// [`OutputError`] for a map that the library does not accept.
 ///
 /// # Panics
 /// If there are fewer labels than pixels.
-pub fn tinted_png(frame: &Frame, labels: &[u16], width: usize) -> Result<Vec<u8>, OutputError> {
-    Ok(tinted(frame, &shade::greys(frame)?, labels, width).png())
+pub fn tinted_png(frame: &Frame, labels: &[u16], rest: Option<[u8; 3]>, width: usize) -> Result<Vec<u8>, OutputError> {
+    let mut greys = shade::greys(frame)?;
+    if let Some(rest) = rest {
+        let is_rest = |(grey, label): &(&mut [u8; 3], &u16)| **label == 0 && **grey != shade::MISSING;
+        greys.iter_mut().zip(labels).filter(is_rest).for_each(|(grey, _)| *grey = rest);
+    }
+    Ok(tinted(frame, &greys, labels, width).png())
 }
 
 /// A picture of [`side_by_side`].

@@ -124,7 +124,7 @@ fn needed(path: PathBuf, beside: &Path) -> Outcome<PathBuf> {
 }
 
 /// Reads a map file so.
-fn reading(path: PathBuf, options: ReadOptions) -> Load<Frame> {
+pub(super) fn reading(path: PathBuf, options: ReadOptions) -> Load<Frame> {
     Box::new(move || Ok(depthplanes_io::read(&path, &options)?))
 }
 

@@ -4,7 +4,7 @@
 
 mod html;
 pub(super) mod plots;
-mod strips;
+pub(super) mod strips;
 pub(super) mod table;
 
 use super::datasets::Item;
@@ -16,8 +16,6 @@ use std::path::Path;
 use strips::Strip;
 use table::Table;
 
-pub(super) use strips::of_maps;
-
 /// The version that our own rows are of.
 const OWN: &str = env!("CARGO_PKG_VERSION");
 
@@ -25,7 +23,7 @@ const OWN: &str = env!("CARGO_PKG_VERSION");
 #[derive(Default)]
 pub(super) struct Section {
     pub(super) title: String,
-    /// What it is about; empty for nothing.
+    /// What it is about, paragraphs with an empty line between; empty for nothing.
     pub(super) text: String,
     pub(super) tables: Vec<Table>,
     pub(super) plots: Vec<Plot>,
@@ -59,6 +57,9 @@ pub(super) fn summary(sections: &[Section]) -> String {
     sections.iter().flat_map(|section| &section.tables).map(|table| table.text() + "\n").collect()
 }
 
+/// Strips of a set.
+const STRIPS: usize = 4;
+
 /// A section for all sets together, if there are several, and one for each.
 ///
 /// # Errors
@@ -68,13 +69,15 @@ pub(super) fn by_dataset(folder: &Path, rows: &[&Row], items: &[Item]) -> Outcom
     let mut sections = vec![Section { title: "All sets".into(), plots: whole, ..Section::default() }];
     for dataset in in_order(rows.iter().map(|row| row.key.dataset.as_str())) {
         let own: Vec<&Row> = rows.iter().copied().filter(|row| row.key.dataset == dataset).collect();
-        let maps: Vec<&Item> = items.iter().filter(|item| item.dataset == dataset).collect();
+        // Maps with a truth say more.
+        let with = |has_truth| items.iter().filter(move |item| item.truth.is_some() == has_truth);
+        let maps = with(true).chain(with(false)).filter(|item| item.dataset == dataset).take(STRIPS);
         sections.push(Section {
             title: dataset.clone(),
             text: String::new(),
             tables: vec![table::of(&dataset, &own)],
             plots: [plots::correct_by_tolerance(&own), plots::three_measures(&own)].into_iter().flatten().collect(),
-            strips: of_maps(folder, &own, &maps)?,
+            strips: strips::of_maps(folder, &own, maps, None)?,
         });
     }
     Ok(sections)
@@ -103,14 +106,25 @@ fn facts(rows: &[&Row]) -> Vec<[String; 2]> {
         ["timed runs a map".into(), all(&|row| row.key.repeat.to_string())],
         ["maps at the same time".into(), all(&|row| row.jobs.to_string())],
     ];
-    for label in labels(rows) {
-        let own = || rows.iter().filter(|row| row.key.label == label);
-        let values = in_order(own().map(|row| row.key.parameters.as_str())).join(" / ");
+    for method in in_order(rows.iter().map(|row| row.key.method.as_str())) {
+        let own = || rows.iter().filter(|row| row.key.method == method);
+        let written = in_order(own().map(|row| row.key.parameters.as_str()));
         // A peer says whose it is.
         let whose = in_order(own().map(|row| row.key.version.as_str()).filter(|version| *version != OWN)).join(" / ");
-        facts.push([label, if whose.is_empty() { values } else { format!("{whose}; {values}") }]);
+        let said = if whose.is_empty() { values(&written) } else { format!("{whose}; {}", written.join(" / ")) };
+        facts.push([method, said]);
     }
     facts
+}
+
+/// Each parameter once with all the values that it has: `min 32 / 64, theta 1`.
+fn values(written: &[String]) -> String {
+    let pairs = || written.iter().flat_map(|all| all.split(", ")).map(|one| one.split_once(' ').unwrap_or((one, "")));
+    let of = |name: String| {
+        let values = in_order(pairs().filter(|(own, _)| *own == name).map(|(_, value)| value));
+        format!("{name} {}", values.join(" / "))
+    };
+    in_order(pairs().map(|(name, _)| name)).into_iter().map(of).collect::<Vec<_>>().join(", ")
 }
 
 /// What the methods are called, in the order in which they were asked for.
@@ -118,7 +132,7 @@ fn labels(rows: &[&Row]) -> Vec<String> {
     in_order(rows.iter().map(|row| row.key.label.as_str()))
 }
 
-fn in_order<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+pub(super) fn in_order<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut seen: Vec<String> = Vec::new();
     for name in names {
         if !seen.iter().any(|other| other == name) {
@@ -128,7 +142,7 @@ fn in_order<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     seen
 }
 
-fn found(row: &Row) -> Option<&Found> {
+pub(super) fn found(row: &Row) -> Option<&Found> {
     match &row.outcome {
         Made::Found(found) => Some(found),
         Made::Refused(_) => None,
@@ -136,13 +150,13 @@ fn found(row: &Row) -> Option<&Found> {
 }
 
 /// What a method found.
-fn by<'a>(rows: &[&'a Row], label: &str) -> Vec<(&'a Row, &'a Found)> {
+pub(super) fn by<'a>(rows: &[&'a Row], label: &str) -> Vec<(&'a Row, &'a Found)> {
     let own = rows.iter().filter(|row| row.key.label == label);
     own.filter_map(|row| Some((*row, found(row)?))).collect()
 }
 
 /// The mean of those that have a value.
-fn mean(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
+pub(super) fn mean(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let known: Vec<f64> = values.flatten().collect();
     (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
 }
@@ -153,7 +167,7 @@ fn per_megapixel(row: &Row, found: &Found) -> f64 {
 }
 
 /// Share of the valid pixels that have a plane.
-fn share(row: &Row, found: &Found) -> f64 {
+pub(super) fn share(row: &Row, found: &Found) -> f64 {
     found.labelled_pixels as f64 / row.valid_pixels.max(1) as f64
 }
 
@@ -168,12 +182,16 @@ fn refusals(rows: &[&Row]) -> Vec<String> {
 fn markdown(page: &Page<'_>) -> String {
     let mut text = format!("# {}\n\n", page.title);
     page.facts.iter().for_each(|[what, value]| text += &format!("- {what}: {value}\n"));
-    for section in page.sections.iter().filter(|section| !section.tables.is_empty()) {
+    for section in page.sections.iter().filter(|section| !section.tables.is_empty() || !section.text.is_empty()) {
         text += &format!("\n## {}\n\n", section.title);
         if !section.text.is_empty() {
             text += &format!("{}\n\n", section.text);
         }
-        section.tables.iter().for_each(|table| text += &table.markdown());
+        for (at, table) in section.tables.iter().enumerate() {
+            text += if at > 0 { "\n" } else { "" };
+            text += &if table.title == section.title { String::new() } else { format!("{}:\n\n", table.title) };
+            text += &table.markdown();
+        }
     }
     if !page.refusals.is_empty() {
         text += "\n## Refusals\n\n";

@@ -10,6 +10,16 @@ pub(in super::super) struct Plot {
     pub(super) svg: String,
 }
 
+impl Plot {
+    /// The same with what it is of in its caption.
+    pub(in super::super) fn of(self, what: &str) -> Self {
+        Plot { caption: format!("{} ({what})", self.caption), ..self }
+    }
+}
+
+/// A line of a plot: what it is called, and its points.
+pub(in super::super) type Line = (String, Vec<(f64, f64)>);
+
 /// Colours of the methods, in their order (Okabe and Ito's, which colour-blind people tell apart, then darker ones).
 const COLOURS: [&str; 10] =
     ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8B4513", "#6A5ACD", "#708090"];
@@ -100,6 +110,37 @@ pub(in super::super) fn three_measures(rows: &[&Row]) -> Option<Plot> {
     let bars = bars.with_legend(vec!["time / longest", "planes / most", "share of valid pixels"]);
     let caption = "Time, number of planes and share of valid pixels, as in the paper's Fig. 15";
     draw(vec![bars.into()], caption, ["", "share"], |layout| from_0_to_1(layout.with_x_tick_rotate(-30.0)))
+}
+
+/// A point for each method and map: planes counted for each of the truth's, and the share of the truth's that is correct.
+pub(in super::super) fn correct_by_count(rows: &[&Row]) -> Option<Plot> {
+    let mut plots: Vec<kuva::prelude::Plot> = Vec::new();
+    for (at, label) in labels(rows).iter().enumerate() {
+        let point = |(_, found): (&Row, &Found)| {
+            let truth = *found.scores.get("planes.truth").filter(|truth| **truth > 0.0)?;
+            (found.planes > 0).then_some((found.planes as f64 / truth, found.scores.get("segcomp.correct")? / truth))
+        };
+        let points: Vec<(f64, f64)> = by(rows, label).into_iter().filter_map(point).collect();
+        if !points.is_empty() {
+            let scatter = ScatterPlot::new().with_data(points).with_color(colour(at)).with_size(4.0);
+            plots.push(scatter.with_legend(label.clone()).into());
+        }
+    }
+    let caption = "Share of the truth's planes that are correct, by the number of planes counted: a point for each map";
+    draw(plots, caption, ["planes counted for each true one", "correct"], |layout| from_0_to_1(layout.with_log_x()))
+}
+
+/// Numbers of planes by `min`.
+pub(in super::super) fn planes_by_min(lines: Vec<Line>, caption: &str) -> Option<Plot> {
+    let line = |(at, (name, points)): (usize, Line)| {
+        let line = LinePlot::new().with_data(points).with_color(colour(at)).with_stroke_width(2.0);
+        line.with_legend(name).into()
+    };
+    let ends = lines.iter().find_map(|(_, points)| Some([points.first()?.0, points.last()?.0]))?;
+    let plots = lines.into_iter().filter(|(_, points)| !points.is_empty()).enumerate().map(line).collect();
+    draw(plots, caption, ["min, pixels", "planes"], |layout| {
+        layout.with_log_x().with_log_y().with_x_axis_min(ends[0]).with_x_axis_max(ends[1])
+    })
 }
 
 fn from_0_to_1(layout: Layout) -> Layout {

@@ -11,8 +11,6 @@ use std::path::Path;
 
 /// Columns of a picture.
 const WIDTH: usize = 240;
-/// Strips of a set.
-const MOST: usize = 4;
 
 /// A map's pictures.
 pub(in super::super) struct Strip {
@@ -26,31 +24,35 @@ pub(super) struct Picture {
     pub(super) png: Vec<u8>,
 }
 
-/// The strips of the first maps of a set.
+/// A strip for each map; `rest` is the colour of what has a value but no plane, the map's grey if there is none.
 ///
 /// # Errors
 /// A map or a label image that cannot be read any more.
-pub(in super::super) fn of_maps(folder: &Path, rows: &[&Row], items: &[&Item]) -> Outcome<Vec<Strip>> {
-    let with = |has_truth: bool| items.iter().filter(move |item| item.truth.is_some() == has_truth);
-    // Those with a truth say more.
-    with(true).chain(with(false)).take(MOST).map(|item| strip(folder, rows, item)).collect()
+pub(in super::super) fn of_maps<'a>(
+    folder: &Path,
+    rows: &[&Row],
+    items: impl Iterator<Item = &'a Item>,
+    rest: Option<[u8; 3]>,
+) -> Outcome<Vec<Strip>> {
+    items.map(|item| strip(folder, rows, item, rest)).collect()
 }
 
-fn strip(folder: &Path, rows: &[&Row], item: &Item) -> Outcome<Strip> {
+fn strip(folder: &Path, rows: &[&Row], item: &Item, rest: Option<[u8; 3]>) -> Outcome<Strip> {
     let frame = (item.frame)()?;
     let none = vec![0; frame.width * frame.height];
-    let mut pictures = vec![Picture { caption: "map".into(), png: tinted_png(&frame, &none, WIDTH)? }];
+    let mut pictures = vec![Picture { caption: "map".into(), png: tinted_png(&frame, &none, None, WIDTH)? }];
     if let Some(truth) = &item.truth {
         let truth = truth()?;
         let planes: Vec<u16> =
             truth.labels.labels.iter().map(|&label| if label < truth.from { 0 } else { label }).collect();
-        pictures.push(Picture { caption: "truth".into(), png: tinted_png(&frame, &planes, WIDTH)? });
+        pictures.push(Picture { caption: "truth".into(), png: tinted_png(&frame, &planes, rest, WIDTH)? });
     }
     for row in rows.iter().filter(|row| row.key.dataset == item.dataset && row.key.map == item.name) {
         let Some(found) = found(row) else { continue };
         let labels = read_labels(folder.join(&found.labels), &DecodeOptions::default())?;
-        let caption = format!("{}: {} planes", row.key.label, found.planes);
-        pictures.push(Picture { caption, png: tinted_png(&frame, &labels.labels, WIDTH)? });
+        let planes = if found.planes == 1 { "plane" } else { "planes" };
+        let caption = format!("{}: {} {planes}", row.key.label, found.planes);
+        pictures.push(Picture { caption, png: tinted_png(&frame, &labels.labels, rest, WIDTH)? });
     }
     Ok(Strip { title: item.name.clone(), pictures })
 }

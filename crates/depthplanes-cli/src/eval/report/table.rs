@@ -6,9 +6,9 @@ use crate::table::{Align, aligned};
 
 /// A table with a heading row.
 pub(in super::super) struct Table {
-    pub(super) title: String,
-    pub(super) head: Vec<String>,
-    pub(super) rows: Vec<Vec<String>>,
+    pub(in super::super) title: String,
+    pub(in super::super) head: Vec<String>,
+    pub(in super::super) rows: Vec<Vec<String>>,
 }
 
 impl Table {
@@ -16,21 +16,25 @@ impl Table {
     pub(super) fn text(&self) -> String {
         let mut rows = vec![self.head.clone()];
         rows.extend(self.rows.iter().cloned());
-        format!("{}\n{}", self.title, aligned(&aligns(&self.head), &rows))
+        format!("{}\n{}", self.title, aligned(&self.aligns(), &rows))
     }
 
     pub(super) fn markdown(&self) -> String {
         let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
-        let rule = format!("|---|{}\n", "---:|".repeat(self.head.len() - 1));
+        let rule = |align: Align| if align == Align::Left { "---|" } else { "---:|" };
+        let rule = format!("|{}\n", self.aligns().into_iter().map(rule).collect::<String>());
         line(&self.head) + &rule + &self.rows.iter().map(|row| line(row)).collect::<String>()
     }
-}
 
-/// Names to the left, numbers to the right.
-fn aligns(head: &[String]) -> Vec<Align> {
-    let mut aligns = vec![Align::Right; head.len()];
-    aligns[0] = Align::Left;
-    aligns
+    /// Names and other words to the left, numbers to the right.
+    pub(super) fn aligns(&self) -> Vec<Align> {
+        let begins_with_a_letter = |cell: &String| cell.starts_with(char::is_alphabetic);
+        let align = |column: usize| {
+            let is_words = self.rows.iter().any(|row| begins_with_a_letter(&row[column]));
+            if column == 0 || is_words { Align::Left } else { Align::Right }
+        };
+        (0..self.head.len()).map(align).collect()
+    }
 }
 
 /// A column: its heading, and what it reads off a row.
