@@ -196,7 +196,8 @@ impl Triples<'_> {
 }
 
 /// Votes since the last plane, counted in the ball's cells: rings of equal height in angle, each of as many cells as make
-/// them about square, in shells of equal depth.
+/// them about square, in shells of equal depth. Either pole is the middle of one cell, for the normals of a plane that
+/// faces the camera lie all around it.
 struct Ball {
     /// Radians.
     angle: f64,
@@ -220,8 +221,8 @@ impl Ball {
         let count = (PI / angle).round().max(1.0);
         let angle = PI / count;
         let mut rings = vec![0];
-        for ring in 0..count as usize {
-            let cells = (TAU * ((ring as f64 + 0.5) * angle).sin() / angle).round().max(1.0);
+        for ring in 0..=count as usize {
+            let cells = (TAU * (ring as f64 * angle).sin() / angle).round().max(1.0);
             rings.push(rings[ring] + cells as usize);
         }
         let counts = vec![0; rings[rings.len() - 1] * SHELLS];
@@ -235,7 +236,7 @@ impl Ball {
         if shell.is_nan() || shell >= SHELLS as f64 {
             return None;
         }
-        let ring = ((z.clamp(-1.0, 1.0).acos() / self.angle) as usize).min(self.rings.len() - 2);
+        let ring = ((z.clamp(-1.0, 1.0).acos() / self.angle).round() as usize).min(self.rings.len() - 2);
         let cells = self.rings[ring + 1] - self.rings[ring];
         let around = (y.atan2(x) / TAU).rem_euclid(1.0) * cells as f64;
         Some((self.rings[ring] + (around as usize).min(cells - 1)) * SHELLS + shell as usize)
@@ -267,4 +268,63 @@ impl Ball {
 fn outward(plane: Plane3) -> Plane3 {
     let sign = if plane.distance < 0.0 { -1.0 } else { 1.0 };
     Plane3 { normal: plane.normal.map(|x| x * sign), distance: plane.distance * sign }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::{Intrinsics, Measure, Sensor};
+    use crate::methods::find;
+
+    fn slanted(x: f64, y: f64, z: f64) -> Plane3 {
+        Plane3 { normal: unit([x, y, z]).unwrap(), distance: 1.01 }
+    }
+
+    #[test]
+    fn either_pole_has_one_cell() {
+        let ball = Ball::new(3f64.to_radians(), 0.02);
+        for pole in [1.0, -1.0] {
+            let cells = [(0.0, 0.0), (0.02, 0.0), (-0.02, 0.0), (0.0, 0.02), (0.0, -0.02)]
+                .map(|(x, y)| ball.cell(&slanted(x, y, pole)).unwrap());
+            assert_eq!(cells, [cells[0]; 5]);
+        }
+    }
+
+    #[test]
+    fn a_plane_and_the_same_turned_round_share_a_cell() {
+        let ball = Ball::new(3f64.to_radians(), 0.02);
+        for [x, y, z] in [[0.0, 0.0, 1.0], [0.3, -0.5, 0.2], [-1.0, 0.0, 0.0], [0.01, 0.9, -0.4]] {
+            let plane = slanted(x, y, z);
+            let turned = Plane3 { normal: plane.normal.map(|x| -x), distance: -plane.distance };
+            assert_eq!(ball.cell(&plane), ball.cell(&turned));
+        }
+    }
+
+    #[test]
+    fn cells_are_about_as_large_as_each_other() {
+        let angle = 3f64.to_radians();
+        let ball = Ball::new(angle, 0.02);
+        for ring in 0..ball.rings.len() - 1 {
+            let [low, high] = [-0.5, 0.5].map(|half| ((ring as f64 + half) * angle).clamp(0.0, PI).cos());
+            let cells = (ball.rings[ring + 1] - ball.rings[ring]) as f64;
+            let squares = TAU * (low - high) / cells / (angle * angle);
+            assert!((0.7..1.1).contains(&squares), "ring {ring}: {squares}");
+        }
+    }
+
+    #[test]
+    fn a_noisy_wall_that_faces_the_camera_is_found() {
+        let mut random = Random::new(3);
+        let wall: Vec<f32> = (0..160 * 120).map(|_| (2.0 + 0.004 * random.gaussian()) as f32).collect();
+        let sensor = Sensor {
+            measure: Measure::Depth { metres: 1.0 },
+            intrinsics: Intrinsics::new(150.0, 150.0, 80.0, 60.0).ok(),
+            ..Sensor::default()
+        };
+        let method = find("hough").unwrap().with(&[]).unwrap();
+        let mut detector = crate::Detector::from_method(method).sensor(sensor);
+        let found = detector.detect(DepthView::new(&wall, 160, 120).unwrap()).unwrap();
+        let sizes: Vec<_> = found.planes.iter().map(|plane| plane.pixel_count).collect();
+        assert!(sizes.len() == 1 && sizes[0] > 160 * 118, "{sizes:?}");
+    }
 }
