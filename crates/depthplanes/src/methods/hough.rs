@@ -2,21 +2,18 @@
 //! detection in point clouds*, 2011), from its description.
 //!
 //! In: any map; lengths are in metres where unit and camera are known. Out: connected pieces of planes that triples of
-//! points vote for. Votes are counted in a ball of cells, each as large as any other on the sphere of directions. Planes
+//! points vote for. Votes are counted in a ball of cells, each about as large as any other but the two at the poles. Planes
 //! that fall into one cell are one plane to it; it uses no normals, so that a plane takes a strip of those it cuts.
 
 use super::affine::Affine;
-use super::cloud::{Cloud, Plane3, Vec3, dot, sub, unit};
-use super::finish::{Finisher, MIN, STAGES, Wanted};
+use super::cloud::Cloud;
+use super::finish::{MIN, STAGES};
 use super::pieces::{EPSILON, Pieces, SEED, Tolerance};
-use super::{Job, Method, MethodInfo, Param, ParamKind};
-use crate::detection::Detection;
-use crate::error::Result;
-use crate::map::{AnyView, DepthView, Pixel};
-use crate::noise::Space;
+use super::rays::{Plane3, Vec3, dot, sub, unit};
+use super::regions::{Input, Runner, Segment, Segmented};
+use super::{Job, MethodInfo, Param, ParamKind};
 use crate::random::Random;
 use crate::select::MAX_PLANES;
-use crate::with_view;
 use std::f64::consts::{PI, TAU};
 
 pub(super) static INFO: MethodInfo = MethodInfo {
@@ -30,9 +27,9 @@ pub(super) static INFO: MethodInfo = MethodInfo {
         let &[min, epsilon, angle, distance, votes, misses, seed] = values else {
             panic!("one value for each row of PARAMS");
         };
-        let (min, votes, misses, seed) = (min as u32, votes as usize, misses as usize, seed as u64);
+        let (min, votes, misses, seed) = (min as usize, votes as usize, misses as usize, seed as u64);
         let angle = angle.to_radians();
-        Ok(Box::new(Runner { min, epsilon, angle, distance, votes, misses, seed, finisher: Finisher::default() }))
+        Ok(Runner::boxed(Hough { min, epsilon, angle, distance, votes, misses, seed }))
     },
 };
 
@@ -94,8 +91,8 @@ const TOGETHER: f64 = 20.0;
 /// Draws without a plane before it gives up: what is left is in no order then (our choice).
 const IDLE: usize = 200_000;
 
-struct Runner {
-    min: u32,
+struct Hough {
+    min: usize,
     epsilon: f64,
     /// Radians.
     angle: f64,
@@ -103,31 +100,25 @@ struct Runner {
     votes: usize,
     misses: usize,
     seed: u64,
-    finisher: Finisher,
 }
 
-impl Method for Runner {
-    fn info(&self) -> &'static MethodInfo {
-        &INFO
+impl Segment for Hough {
+    const INFO: &'static MethodInfo = &INFO;
+
+    fn min(&self) -> usize {
+        self.min
     }
 
-    fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        with_view!(map, map => self.hough(map, job, out))
-    }
-}
-
-impl Runner {
-    fn hough<T: Pixel>(&mut self, map: DepthView<'_, T>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        let affine = Affine::of(&map, Space::of(job.sensor.measure));
-        let cloud = Cloud::of(&affine, &job.sensor, 1);
+    fn segment(&self, map: &Input<'_>, job: &mut Job<'_>) -> Segmented {
+        let cloud = Cloud::of(&map.affine, &map.sensor, 1);
         job.done("points");
-        let image = self.vote(&affine, &cloud);
+        let image = self.vote(&map.affine, &cloud);
         job.done("vote");
-        let image = DepthView::new(&image, map.width(), map.height())?;
-        let wanted = Wanted { min: self.min, min_area: 0.0, noise: None, valid_pixels: affine.valid_pixels };
-        self.finisher.finish(&map, &image, &wanted, job, out)
+        Segmented { image, noise: None }
     }
+}
 
+impl Hough {
     /// The region of every pixel, 0 for none (algorithm 2 of Borrmann et al.).
     fn vote(&self, affine: &Affine, cloud: &Cloud) -> Vec<u16> {
         let tolerance = Tolerance::new(self.epsilon, -1.0, cloud);
@@ -137,7 +128,7 @@ impl Runner {
         let mut pieces = Pieces::new(affine, cloud, tolerance, 0);
         let mut free = cloud.known.clone();
         let (mut misses, mut idle) = (0, 0);
-        while free.len() > self.min as usize && misses < self.misses && idle < IDLE && pieces.count() < MAX_PLANES {
+        while free.len() > self.min && misses < self.misses && idle < IDLE && pieces.count() < MAX_PLANES {
             idle += 1;
             let Some((plane, first)) = triples.draw(&free, &pieces) else { continue };
             let Some(cell) = ball.cell(&plane) else { continue };
@@ -146,7 +137,7 @@ impl Runner {
                 continue;
             }
             let Some((plane, voters)) = ball.winner(cell) else { continue };
-            match pieces.take(&plane, &voters, self.min as usize) {
+            match pieces.take(&plane, &voters, self.min) {
                 Some(_) => {
                     (misses, idle) = (0, 0);
                     free.retain(|&at| pieces.is_free(at as usize));
@@ -196,8 +187,8 @@ impl Triples<'_> {
 }
 
 /// Votes since the last plane, counted in the ball's cells: rings of equal height in angle, each of as many cells as make
-/// them about square, in shells of equal depth. Either pole is the middle of one cell, for the normals of a plane that
-/// faces the camera lie all around it.
+/// them about square, in shells of equal depth. The ring at either pole is one cell: the normals of a plane that faces the
+/// camera lie all around it.
 struct Ball {
     /// Radians.
     angle: f64,
@@ -221,9 +212,10 @@ impl Ball {
         let count = (PI / angle).round().max(1.0);
         let angle = PI / count;
         let mut rings = vec![0];
-        for ring in 0..=count as usize {
-            let cells = (TAU * (ring as f64 * angle).sin() / angle).round().max(1.0);
-            rings.push(rings[ring] + cells as usize);
+        for ring in 0..count as usize {
+            let around = (TAU * ((ring as f64 + 0.5) * angle).sin() / angle).round() as usize;
+            let is_pole = ring == 0 || ring + 1 == count as usize;
+            rings.push(rings[ring] + if is_pole { 1 } else { around });
         }
         let counts = vec![0; rings[rings.len() - 1] * SHELLS];
         Ball { angle, depth, rings, counts, votes: Vec::new() }
@@ -236,7 +228,7 @@ impl Ball {
         if shell.is_nan() || shell >= SHELLS as f64 {
             return None;
         }
-        let ring = ((z.clamp(-1.0, 1.0).acos() / self.angle).round() as usize).min(self.rings.len() - 2);
+        let ring = ((z.clamp(-1.0, 1.0).acos() / self.angle) as usize).min(self.rings.len() - 2);
         let cells = self.rings[ring + 1] - self.rings[ring];
         let around = (y.atan2(x) / TAU).rem_euclid(1.0) * cells as f64;
         Some((self.rings[ring] + (around as usize).min(cells - 1)) * SHELLS + shell as usize)
@@ -301,14 +293,14 @@ mod tests {
     }
 
     #[test]
-    fn cells_are_about_as_large_as_each_other() {
+    fn cells_are_about_as_large_as_each_other_but_at_the_poles() {
         let angle = 3f64.to_radians();
         let ball = Ball::new(angle, 0.02);
-        for ring in 0..ball.rings.len() - 1 {
-            let [low, high] = [-0.5, 0.5].map(|half| ((ring as f64 + half) * angle).clamp(0.0, PI).cos());
+        for ring in 1..ball.rings.len() - 2 {
+            let [low, high] = [ring, ring + 1].map(|ring| (ring as f64 * angle).cos());
             let cells = (ball.rings[ring + 1] - ball.rings[ring]) as f64;
             let squares = TAU * (low - high) / cells / (angle * angle);
-            assert!((0.7..1.1).contains(&squares), "ring {ring}: {squares}");
+            assert!((0.9..1.1).contains(&squares), "ring {ring}: {squares}");
         }
     }
 

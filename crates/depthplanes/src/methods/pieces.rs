@@ -6,7 +6,8 @@
 //! plane, and a later piece whose normal they do have takes them.
 
 use super::affine::Affine;
-use super::cloud::{Cloud, Plane3, dot};
+use super::cloud::Cloud;
+use super::rays::{Plane3, Vec3, dot};
 use super::{Param, ParamKind};
 use crate::fit::Moments;
 
@@ -52,7 +53,7 @@ impl Tolerance {
     }
 
     #[inline(always)]
-    pub(super) fn holds(&self, plane: &Plane3, point: [f64; 3], normal: [f64; 3]) -> bool {
+    pub(super) fn holds(&self, plane: &Plane3, point: Vec3, normal: Vec3) -> bool {
         plane.off(point).abs() <= self.epsilon && dot(plane.normal, normal).abs() >= self.cosine
     }
 }
