@@ -266,6 +266,7 @@ fn outward(plane: Plane3) -> Plane3 {
 mod tests {
     use super::*;
     use crate::camera::{Intrinsics, Measure, Sensor};
+    use crate::map::DepthView;
     use crate::methods::find;
 
     fn slanted(x: f64, y: f64, z: f64) -> Plane3 {
