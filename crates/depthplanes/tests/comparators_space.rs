@@ -111,6 +111,20 @@ fn ransac_with_one_epsilon_for_all_ranges_breaks_what_is_far() {
 }
 
 #[test]
+fn ransac_leaves_planes_that_meet_their_points_near_edges() {
+    let mut count = [0, 0];
+    for seed in 1..=3 {
+        let frame = scene(&format!("room:seed={seed},sensor=kinect"));
+        let found = detect("ransac", &[], frame.sensor, frame.view());
+        let matched = best(&frame.truth.pieces(500).labels, &found.labels);
+        count[0] += matched.iter().filter(|(_, iou)| *iou >= 0.75).count();
+        count[1] += matched.len();
+    }
+    println!("ransac: {} of {} planes of Kinect rooms", count[0], count[1]);
+    assert!(count[0] >= 62, "{count:?}");
+}
+
+#[test]
 fn hough_joins_planes_that_fall_into_one_cell() {
     // A roof whose halves are bent by 4 degrees.
     let (width, height, slope) = (160, 120, 2f64.to_radians().tan());

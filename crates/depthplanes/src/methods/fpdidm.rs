@@ -7,14 +7,10 @@
 
 use super::a_contrario::{Abc, Background, DELTA, EPS, Region, paint};
 use super::affine::{Affine, Around};
-use super::finish::{Finisher, MIN, STAGES, Wanted};
-use super::{Job, Method, MethodInfo, Param, ParamKind};
-use crate::detection::Detection;
-use crate::error::Result;
+use super::finish::{MIN, STAGES};
+use super::regions::{Input, Runner, Segment, Segmented};
+use super::{Job, MethodInfo, Param, ParamKind};
 use crate::fit::Moments;
-use crate::map::{AnyView, DepthView, Pixel};
-use crate::noise::{NoiseModel, Space};
-use crate::with_view;
 
 pub(super) static INFO: MethodInfo = MethodInfo {
     name: "fpdidm",
@@ -26,7 +22,7 @@ pub(super) static INFO: MethodInfo = MethodInfo {
         INFO.check(values)?;
         let &[min, eps, delta, radius] = values else { panic!("one value for each row of PARAMS") };
         let (min, log10_eps, radius) = (min as usize, eps.log10(), radius as usize);
-        Ok(Box::new(Runner { min, log10_eps, delta, radius, finisher: Finisher::default() }))
+        Ok(Runner::boxed(Fpdidm { min, log10_eps, delta, radius }))
     },
 };
 
@@ -49,40 +45,32 @@ const PARAMS: &[Param] = &[
 /// Down to which share of delta a region that chance explains is cut, by halves (five times, as in LSD).
 const SMALLEST: f64 = 1.0 / 32.0;
 
-struct Runner {
+struct Fpdidm {
     min: usize,
     log10_eps: f64,
     delta: f64,
     radius: usize,
-    finisher: Finisher,
 }
 
-impl Method for Runner {
-    fn info(&self) -> &'static MethodInfo {
-        &INFO
+impl Segment for Fpdidm {
+    const INFO: &'static MethodInfo = &INFO;
+
+    fn min(&self) -> usize {
+        self.min
     }
 
-    fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        with_view!(map, map => self.fpdidm(map, job, out))
-    }
-}
-
-impl Runner {
-    fn fpdidm<T: Pixel>(&mut self, map: DepthView<'_, T>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        let affine = Affine::of(&map, Space::of(job.sensor.measure));
-        let noise = NoiseModel::of_map(&map, &job.sensor);
-        let mut background = Background::of(&affine, &noise, self.delta);
-        let around = affine.planes(self.radius);
+    fn segment(&self, map: &Input<'_>, job: &mut Job<'_>) -> Segmented {
+        let noise = map.noise();
+        let mut background = Background::of(&map.affine, &noise, self.delta);
+        let around = map.affine.planes(self.radius);
         job.done("planes");
         let regions = self.search(&mut background, &around);
         job.done("grow");
-        let image = paint(regions.iter(), map.area());
-        let image = DepthView::new(&image, map.width(), map.height())?;
-        let valid_pixels = affine.valid_pixels;
-        let wanted = Wanted { min: self.min as u32, min_area: 0.0, noise: Some(&noise), valid_pixels };
-        self.finisher.finish(&map, &image, &wanted, job, out)
+        Segmented { image: paint(regions.iter(), around.len()), noise: Some(noise) }
     }
+}
 
+impl Fpdidm {
     /// The regions that are planes, from the flattest seed on.
     fn search(&self, background: &mut Background<'_>, around: &[Option<Around>]) -> Vec<Region> {
         let mut is_free = vec![true; around.len()];

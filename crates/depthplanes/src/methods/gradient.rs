@@ -7,14 +7,11 @@
 //! its window.
 
 use super::affine::{Affine, Around};
-use super::finish::{Finisher, MIN, STAGES, Wanted};
-use super::{Job, Method, MethodInfo, Param, ParamKind};
-use crate::detection::Detection;
-use crate::error::Result;
-use crate::map::{AnyView, DepthView, Pixel};
-use crate::noise::{NoiseModel, Space};
+use super::finish::{MIN, STAGES};
+use super::regions::{Input, Runner, Segment, Segmented};
+use super::{Job, MethodInfo, Param, ParamKind};
+use crate::noise::NoiseModel;
 use crate::select::MAX_PLANES;
-use crate::with_view;
 
 pub(super) static INFO: MethodInfo = MethodInfo {
     name: "gradient",
@@ -26,7 +23,7 @@ pub(super) static INFO: MethodInfo = MethodInfo {
         INFO.check(values)?;
         let &[min, theta, radius, continuity] = values else { panic!("one value for each row of PARAMS") };
         let (min, radius) = (min as usize, radius as usize);
-        Ok(Box::new(Runner { min, theta, radius, continuity, finisher: Finisher::default() }))
+        Ok(Runner::boxed(Gradient { min, theta, radius, continuity }))
     },
 };
 
@@ -65,39 +62,32 @@ const PARAMS: &[Param] = &[
     },
 ];
 
-struct Runner {
+struct Gradient {
     min: usize,
     /// Largest difference of gradients.
     theta: f64,
     radius: usize,
     continuity: f64,
-    finisher: Finisher,
 }
 
-impl Method for Runner {
-    fn info(&self) -> &'static MethodInfo {
-        &INFO
+impl Segment for Gradient {
+    const INFO: &'static MethodInfo = &INFO;
+
+    fn min(&self) -> usize {
+        self.min
     }
 
-    fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        with_view!(map, map => self.gradient(map, job, out))
-    }
-}
-
-impl Runner {
-    fn gradient<T: Pixel>(&mut self, map: DepthView<'_, T>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        let affine = Affine::of(&map, Space::of(job.sensor.measure));
-        let noise = NoiseModel::of_map(&map, &job.sensor);
-        let gradients = self.gradients(&affine);
+    fn segment(&self, map: &Input<'_>, job: &mut Job<'_>) -> Segmented {
+        let noise = map.noise();
+        let gradients = self.gradients(&map.affine);
         job.done("gradients");
-        let image = self.link(&affine, &noise, &gradients);
+        let image = self.link(&map.affine, &noise, &gradients);
         job.done("link");
-        let image = DepthView::new(&image, map.width(), map.height())?;
-        let valid_pixels = affine.valid_pixels;
-        let wanted = Wanted { min: self.min as u32, min_area: 0.0, noise: Some(&noise), valid_pixels };
-        self.finisher.finish(&map, &image, &wanted, job, out)
+        Segmented { image, noise: Some(noise) }
     }
+}
 
+impl Gradient {
     /// For each pixel the gradient of the flattest of nine windows that hold it: around it, beside it, at its corners. One
     /// of them is clear of an edge nearby, as in Kuwahara's filter (our choice: at an edge the window around a pixel has
     /// the gradient of neither side).

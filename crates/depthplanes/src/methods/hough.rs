@@ -2,21 +2,18 @@
 //! detection in point clouds*, 2011), from its description.
 //!
 //! In: any map; lengths are in metres where unit and camera are known. Out: connected pieces of planes that triples of
-//! points vote for. Votes are counted in a ball of cells, each as large as any other on the sphere of directions. Planes
+//! points vote for. Votes are counted in a ball of cells, each about as large as any other but the two at the poles. Planes
 //! that fall into one cell are one plane to it; it uses no normals, so that a plane takes a strip of those it cuts.
 
 use super::affine::Affine;
-use super::cloud::{Cloud, Plane3, Vec3, dot, sub, unit};
-use super::finish::{Finisher, MIN, STAGES, Wanted};
+use super::cloud::Cloud;
+use super::finish::{MIN, STAGES};
 use super::pieces::{EPSILON, Pieces, SEED, Tolerance};
-use super::{Job, Method, MethodInfo, Param, ParamKind};
-use crate::detection::Detection;
-use crate::error::Result;
-use crate::map::{AnyView, DepthView, Pixel};
-use crate::noise::Space;
+use super::rays::{Plane3, Vec3, dot, sub, unit};
+use super::regions::{Input, Runner, Segment, Segmented};
+use super::{Job, MethodInfo, Param, ParamKind};
 use crate::random::Random;
 use crate::select::MAX_PLANES;
-use crate::with_view;
 use std::f64::consts::{PI, TAU};
 
 pub(super) static INFO: MethodInfo = MethodInfo {
@@ -30,9 +27,9 @@ pub(super) static INFO: MethodInfo = MethodInfo {
         let &[min, epsilon, angle, distance, votes, misses, seed] = values else {
             panic!("one value for each row of PARAMS");
         };
-        let (min, votes, misses, seed) = (min as u32, votes as usize, misses as usize, seed as u64);
+        let (min, votes, misses, seed) = (min as usize, votes as usize, misses as usize, seed as u64);
         let angle = angle.to_radians();
-        Ok(Box::new(Runner { min, epsilon, angle, distance, votes, misses, seed, finisher: Finisher::default() }))
+        Ok(Runner::boxed(Hough { min, epsilon, angle, distance, votes, misses, seed }))
     },
 };
 
@@ -94,8 +91,8 @@ const TOGETHER: f64 = 20.0;
 /// Draws without a plane before it gives up: what is left is in no order then (our choice).
 const IDLE: usize = 200_000;
 
-struct Runner {
-    min: u32,
+struct Hough {
+    min: usize,
     epsilon: f64,
     /// Radians.
     angle: f64,
@@ -103,31 +100,25 @@ struct Runner {
     votes: usize,
     misses: usize,
     seed: u64,
-    finisher: Finisher,
 }
 
-impl Method for Runner {
-    fn info(&self) -> &'static MethodInfo {
-        &INFO
+impl Segment for Hough {
+    const INFO: &'static MethodInfo = &INFO;
+
+    fn min(&self) -> usize {
+        self.min
     }
 
-    fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        with_view!(map, map => self.hough(map, job, out))
-    }
-}
-
-impl Runner {
-    fn hough<T: Pixel>(&mut self, map: DepthView<'_, T>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        let affine = Affine::of(&map, Space::of(job.sensor.measure));
-        let cloud = Cloud::of(&affine, &job.sensor, 1);
+    fn segment(&self, map: &Input<'_>, job: &mut Job<'_>) -> Segmented {
+        let cloud = Cloud::of(&map.affine, &map.sensor, 1);
         job.done("points");
-        let image = self.vote(&affine, &cloud);
+        let image = self.vote(&map.affine, &cloud);
         job.done("vote");
-        let image = DepthView::new(&image, map.width(), map.height())?;
-        let wanted = Wanted { min: self.min, min_area: 0.0, noise: None, valid_pixels: affine.valid_pixels };
-        self.finisher.finish(&map, &image, &wanted, job, out)
+        Segmented { image, noise: None }
     }
+}
 
+impl Hough {
     /// The region of every pixel, 0 for none (algorithm 2 of Borrmann et al.).
     fn vote(&self, affine: &Affine, cloud: &Cloud) -> Vec<u16> {
         let tolerance = Tolerance::new(self.epsilon, -1.0, cloud);
@@ -137,7 +128,7 @@ impl Runner {
         let mut pieces = Pieces::new(affine, cloud, tolerance, 0);
         let mut free = cloud.known.clone();
         let (mut misses, mut idle) = (0, 0);
-        while free.len() > self.min as usize && misses < self.misses && idle < IDLE && pieces.count() < MAX_PLANES {
+        while free.len() > self.min && misses < self.misses && idle < IDLE && pieces.count() < MAX_PLANES {
             idle += 1;
             let Some((plane, first)) = triples.draw(&free, &pieces) else { continue };
             let Some(cell) = ball.cell(&plane) else { continue };
@@ -146,7 +137,7 @@ impl Runner {
                 continue;
             }
             let Some((plane, voters)) = ball.winner(cell) else { continue };
-            match pieces.take(&plane, &voters, self.min as usize) {
+            match pieces.take(&plane, &voters, self.min) {
                 Some(_) => {
                     (misses, idle) = (0, 0);
                     free.retain(|&at| pieces.is_free(at as usize));
@@ -196,7 +187,8 @@ impl Triples<'_> {
 }
 
 /// Votes since the last plane, counted in the ball's cells: rings of equal height in angle, each of as many cells as make
-/// them about square, in shells of equal depth.
+/// them about square, in shells of equal depth. The ring at either pole is one cell: the normals of a plane that faces the
+/// camera lie all around it.
 struct Ball {
     /// Radians.
     angle: f64,
@@ -221,8 +213,9 @@ impl Ball {
         let angle = PI / count;
         let mut rings = vec![0];
         for ring in 0..count as usize {
-            let cells = (TAU * ((ring as f64 + 0.5) * angle).sin() / angle).round().max(1.0);
-            rings.push(rings[ring] + cells as usize);
+            let around = (TAU * ((ring as f64 + 0.5) * angle).sin() / angle).round() as usize;
+            let is_pole = ring == 0 || ring + 1 == count as usize;
+            rings.push(rings[ring] + if is_pole { 1 } else { around });
         }
         let counts = vec![0; rings[rings.len() - 1] * SHELLS];
         Ball { angle, depth, rings, counts, votes: Vec::new() }
@@ -267,4 +260,64 @@ impl Ball {
 fn outward(plane: Plane3) -> Plane3 {
     let sign = if plane.distance < 0.0 { -1.0 } else { 1.0 };
     Plane3 { normal: plane.normal.map(|x| x * sign), distance: plane.distance * sign }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::{Intrinsics, Measure, Sensor};
+    use crate::map::DepthView;
+    use crate::methods::find;
+
+    fn slanted(x: f64, y: f64, z: f64) -> Plane3 {
+        Plane3 { normal: unit([x, y, z]).unwrap(), distance: 1.01 }
+    }
+
+    #[test]
+    fn either_pole_has_one_cell() {
+        let ball = Ball::new(3f64.to_radians(), 0.02);
+        for pole in [1.0, -1.0] {
+            let cells = [(0.0, 0.0), (0.02, 0.0), (-0.02, 0.0), (0.0, 0.02), (0.0, -0.02)]
+                .map(|(x, y)| ball.cell(&slanted(x, y, pole)).unwrap());
+            assert_eq!(cells, [cells[0]; 5]);
+        }
+    }
+
+    #[test]
+    fn a_plane_and_the_same_turned_round_share_a_cell() {
+        let ball = Ball::new(3f64.to_radians(), 0.02);
+        for [x, y, z] in [[0.0, 0.0, 1.0], [0.3, -0.5, 0.2], [-1.0, 0.0, 0.0], [0.01, 0.9, -0.4]] {
+            let plane = slanted(x, y, z);
+            let turned = Plane3 { normal: plane.normal.map(|x| -x), distance: -plane.distance };
+            assert_eq!(ball.cell(&plane), ball.cell(&turned));
+        }
+    }
+
+    #[test]
+    fn cells_are_about_as_large_as_each_other_but_at_the_poles() {
+        let angle = 3f64.to_radians();
+        let ball = Ball::new(angle, 0.02);
+        for ring in 1..ball.rings.len() - 2 {
+            let [low, high] = [ring, ring + 1].map(|ring| (ring as f64 * angle).cos());
+            let cells = (ball.rings[ring + 1] - ball.rings[ring]) as f64;
+            let squares = TAU * (low - high) / cells / (angle * angle);
+            assert!((0.9..1.1).contains(&squares), "ring {ring}: {squares}");
+        }
+    }
+
+    #[test]
+    fn a_noisy_wall_that_faces_the_camera_is_found() {
+        let mut random = Random::new(3);
+        let wall: Vec<f32> = (0..160 * 120).map(|_| (2.0 + 0.004 * random.gaussian()) as f32).collect();
+        let sensor = Sensor {
+            measure: Measure::Depth { metres: 1.0 },
+            intrinsics: Intrinsics::new(150.0, 150.0, 80.0, 60.0).ok(),
+            ..Sensor::default()
+        };
+        let method = find("hough").unwrap().with(&[]).unwrap();
+        let mut detector = crate::Detector::from_method(method).sensor(sensor);
+        let found = detector.detect(DepthView::new(&wall, 160, 120).unwrap()).unwrap();
+        let sizes: Vec<_> = found.planes.iter().map(|plane| plane.pixel_count).collect();
+        assert!(sizes.len() == 1 && sizes[0] > 160 * 118, "{sizes:?}");
+    }
 }

@@ -11,12 +11,15 @@ mod gradient;
 mod hough;
 mod mdl;
 mod ngaf;
+mod noise;
 mod normals;
 mod pieces;
 mod planar;
 mod ppdfdm;
 mod ransac;
+mod rays;
 mod records;
+mod regions;
 mod tries;
 
 use crate::camera::Sensor;

@@ -7,15 +7,11 @@
 //! finds little.
 
 use super::affine::Affine;
-use super::cloud::{Plane3, Rays, Vec3, cross, dot, sub, unit};
-use super::finish::{Finisher, MIN, STAGES, Wanted};
-use super::{Job, Method, MethodInfo, Param, ParamKind};
-use crate::detection::Detection;
-use crate::error::Result;
-use crate::map::{AnyView, DepthView, Pixel};
-use crate::noise::Space;
+use super::finish::{MIN, STAGES};
+use super::rays::{Plane3, Rays, Vec3, cross, dot, sub, unit};
+use super::regions::{Input, Runner, Segment, Segmented};
+use super::{Job, MethodInfo, Param, ParamKind};
 use crate::select::MAX_PLANES;
-use crate::with_view;
 
 pub(super) static INFO: MethodInfo = MethodInfo {
     name: "normals",
@@ -27,7 +23,7 @@ pub(super) static INFO: MethodInfo = MethodInfo {
         INFO.check(values)?;
         let &[min, angle, distance, reach] = values else { panic!("one value for each row of PARAMS") };
         let cosine = angle.to_radians().cos();
-        Ok(Box::new(Runner { min: min as u32, cosine, distance, reach: reach as usize, finisher: Finisher::default() }))
+        Ok(Runner::boxed(Normals { min: min as usize, cosine, distance, reach: reach as usize }))
     },
 };
 
@@ -65,38 +61,32 @@ const PARAMS: &[Param] = &[
     },
 ];
 
-struct Runner {
-    min: u32,
+struct Normals {
+    min: usize,
     /// Of the largest angle.
     cosine: f64,
     distance: f64,
     reach: usize,
-    finisher: Finisher,
 }
 
-impl Method for Runner {
-    fn info(&self) -> &'static MethodInfo {
-        &INFO
+impl Segment for Normals {
+    const INFO: &'static MethodInfo = &INFO;
+
+    fn min(&self) -> usize {
+        self.min
     }
 
-    fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        with_view!(map, map => self.normals(map, job, out))
-    }
-}
-
-impl Runner {
-    fn normals<T: Pixel>(&mut self, map: DepthView<'_, T>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        let affine = Affine::of(&map, Space::of(job.sensor.measure));
-        let points = points(&affine, &Rays::of(&job.sensor, &affine));
-        let normals = normals(&affine, &points, self.reach);
+    fn segment(&self, map: &Input<'_>, job: &mut Job<'_>) -> Segmented {
+        let points = points(&map.affine, &Rays::scaled(&map.sensor, &map.affine));
+        let normals = normals(&map.affine, &points, self.reach);
         job.done("points");
-        let image = self.grow(&affine, &points, &normals);
+        let image = self.grow(&map.affine, &points, &normals);
         job.done("grow");
-        let image = DepthView::new(&image, map.width(), map.height())?;
-        let wanted = Wanted { min: self.min, min_area: 0.0, noise: None, valid_pixels: affine.valid_pixels };
-        self.finisher.finish(&map, &image, &wanted, job, out)
+        Segmented { image, noise: None }
     }
+}
 
+impl Normals {
     /// The region of every pixel, 0 for none.
     fn grow(&self, affine: &Affine, points: &[Option<Vec3>], normals: &[Option<Vec3>]) -> Vec<u16> {
         let mut image = vec![0; points.len()];
@@ -130,7 +120,7 @@ impl Runner {
                     }
                 }
             }
-            if members.len() > self.min as usize && planes.len() < MAX_PLANES {
+            if members.len() > self.min && planes.len() < MAX_PLANES {
                 planes.push(region.plane());
                 members.iter().for_each(|&at| image[at] = planes.len() as u16);
             }

@@ -2,9 +2,12 @@
 //!
 //! In: a map's points, and planes that some of them suggest. Out: the region of every pixel. A piece is a connected part
 //! of the points on a plane that no earlier piece has; its plane is fitted to it in q, where the sensor's noise is even.
+//! Points near edges, whose normals are those of neither side, are only lent to the piece beside them: they found no
+//! plane, and a later piece whose normal they do have takes them.
 
 use super::affine::Affine;
-use super::cloud::{Cloud, Plane3, dot};
+use super::cloud::Cloud;
+use super::rays::{Plane3, Vec3, dot};
 use super::{Param, ParamKind};
 use crate::fit::Moments;
 
@@ -50,7 +53,7 @@ impl Tolerance {
     }
 
     #[inline(always)]
-    pub(super) fn holds(&self, plane: &Plane3, point: [f64; 3], normal: [f64; 3]) -> bool {
+    pub(super) fn holds(&self, plane: &Plane3, point: Vec3, normal: Vec3) -> bool {
         plane.off(point).abs() <= self.epsilon && dot(plane.normal, normal).abs() >= self.cosine
     }
 }
@@ -66,6 +69,8 @@ pub(super) struct Pieces<'a> {
     planes: Vec<Plane3>,
     /// For each pixel the number of its piece; 0 for none.
     image: Vec<u16>,
+    /// For each pixel the last piece that it was lent to; 0 for none.
+    lent: Vec<u16>,
     /// For each pixel the last search that reached it.
     reached: Vec<u32>,
     search: u32,
@@ -75,8 +80,8 @@ impl<'a> Pieces<'a> {
     /// None yet. Normals are from windows that reach so many pixels.
     pub(super) fn new(affine: &'a Affine, cloud: &'a Cloud, tolerance: Tolerance, reach: usize) -> Self {
         let pixels = affine.q.len();
-        let (image, reached) = (vec![0; pixels], vec![0; pixels]);
-        Pieces { affine, cloud, tolerance, reach, planes: Vec::new(), image, reached, search: 0 }
+        let (image, lent, reached) = (vec![0; pixels], vec![0; pixels], vec![0; pixels]);
+        Pieces { affine, cloud, tolerance, reach, planes: Vec::new(), image, lent, reached, search: 0 }
     }
 
     /// How many there are.
@@ -84,8 +89,13 @@ impl<'a> Pieces<'a> {
         self.planes.len()
     }
 
-    /// Whether a pixel has a point that belongs to no piece.
+    /// Whether a pixel has a point that belongs to no piece and is lent to none.
     pub(super) fn is_free(&self, at: usize) -> bool {
+        self.lent[at] == 0 && self.is_open(at)
+    }
+
+    /// Whether a pixel has a point that belongs to no piece; it may be lent to one.
+    fn is_open(&self, at: usize) -> bool {
         // A comparison with NaN is false.
         self.image[at] == 0 && self.cloud.points[at][2] > 0.0 && self.cloud.normals[at][2] >= -1.0
     }
@@ -93,15 +103,27 @@ impl<'a> Pieces<'a> {
     /// The largest connected piece of free points on the plane that holds one of these; none if a piece has more than
     /// `most` points.
     pub(super) fn largest(&mut self, plane: &Plane3, from: &[u32], most: usize) -> Option<Vec<u32>> {
+        self.largest_among(Self::is_free, plane, from, most)
+    }
+
+    fn largest_among(
+        &mut self,
+        is_among: fn(&Self, usize) -> bool,
+        plane: &Plane3,
+        from: &[u32],
+        most: usize,
+    ) -> Option<Vec<u32>> {
         self.search += 1;
         let (mut best, mut piece) = (Vec::new(), Vec::new());
         for &start in from {
             piece.clear();
-            self.reach(plane, start, &mut piece);
+            self.reach(is_among, plane, start as usize, &mut piece);
             let mut next = 0;
             while let Some(&at) = piece.get(next) {
                 next += 1;
-                self.affine.neighbours(at as usize).for_each(|beside| self.reach(plane, beside as u32, &mut piece));
+                for beside in self.affine.neighbours(at as usize) {
+                    self.reach(is_among, plane, beside, &mut piece);
+                }
                 if piece.len() > most {
                     return None;
                 }
@@ -114,21 +136,21 @@ impl<'a> Pieces<'a> {
     }
 
     /// Adds a pixel to a piece, if it is on the plane and was not reached before.
-    fn reach(&mut self, plane: &Plane3, at: u32, piece: &mut Vec<u32>) {
-        let pixel = at as usize;
-        let (point, normal) = (self.cloud.points[pixel], self.cloud.normals[pixel]);
-        if self.reached[pixel] != self.search && self.is_free(pixel) && self.tolerance.holds(plane, point, normal) {
-            self.reached[pixel] = self.search;
-            piece.push(at);
+    fn reach(&mut self, is_among: fn(&Self, usize) -> bool, plane: &Plane3, at: usize, piece: &mut Vec<u32>) {
+        let (point, normal) = (self.cloud.points[at], self.cloud.normals[at]);
+        if self.reached[at] != self.search && is_among(self, at) && self.tolerance.holds(plane, point, normal) {
+            self.reached[at] = self.search;
+            piece.push(at as u32);
         }
     }
 
-    /// Takes the piece around these points, its plane fitted to it, unless it has `min` points or fewer. Gives its size.
+    /// Takes the piece around these points, its plane fitted to it, unless it has `min` points or fewer. Gives how many
+    /// points are free no longer.
     pub(super) fn take(&mut self, plane: &Plane3, from: &[u32], min: usize) -> Option<usize> {
-        let (mut plane, mut piece) = (*plane, self.largest(plane, from, usize::MAX)?);
+        let (mut plane, mut piece) = (*plane, self.largest_among(Self::is_open, plane, from, usize::MAX)?);
         for _ in 0..FITS {
             let fitted = self.fit(&piece)?;
-            let larger = self.largest(&fitted, &piece, usize::MAX)?;
+            let larger = self.largest_among(Self::is_open, &fitted, &piece, usize::MAX)?;
             if larger.len() < piece.len() {
                 break;
             }
@@ -138,13 +160,13 @@ impl<'a> Pieces<'a> {
             return None;
         }
         self.planes.push(plane);
+        let taken = piece.iter().filter(|&&at| self.is_free(at as usize)).count();
         piece.iter().for_each(|&at| self.image[at as usize] = self.planes.len() as u16);
-        Some(piece.len() + self.widen(&plane, piece))
+        Some(taken + self.lend(&plane, piece))
     }
 
-    /// Gives a piece the points beside it that lie on its plane, as far as windows reach: near an edge they are on two
-    /// surfaces, and normals are those of neither. Gives how many.
-    fn widen(&mut self, plane: &Plane3, piece: Vec<u32>) -> usize {
+    /// Lends a piece the free points beside it that lie on its plane, as far as windows reach. Gives how many.
+    fn lend(&mut self, plane: &Plane3, piece: Vec<u32>) -> usize {
         let (number, mut rim, mut count) = (self.planes.len() as u16, piece, 0);
         // Corners of windows are twice as many steps away.
         for _ in 0..2 * self.reach {
@@ -152,7 +174,7 @@ impl<'a> Pieces<'a> {
             for beside in rim.iter().flat_map(|&at| self.affine.neighbours(at as usize)) {
                 let is_near = || plane.off(self.cloud.points[beside]).abs() <= self.tolerance.epsilon;
                 if self.is_free(beside) && is_near() {
-                    self.image[beside] = number;
+                    self.lent[beside] = number;
                     next.push(beside as u32);
                 }
             }
@@ -175,9 +197,11 @@ impl<'a> Pieces<'a> {
         self.cloud.rays.plane([a, b, c + q0 - a * u0 - b * v0])
     }
 
-    /// The region of every pixel. Points beside a piece that lie on its plane and are in no other are given to it.
+    /// The region of every pixel. What is lent now belongs; points beside a piece that lie on its plane and are in no
+    /// other are given to it.
     pub(super) fn finish(self) -> Vec<u16> {
-        let Pieces { affine, cloud, tolerance, planes, mut image, .. } = self;
+        let Pieces { affine, cloud, tolerance, planes, mut image, lent, .. } = self;
+        image.iter_mut().zip(lent).filter(|(piece, _)| **piece == 0).for_each(|(piece, lent)| *piece = lent);
         affine.spread(&mut image, |at, piece| {
             planes[usize::from(piece) - 1].off(cloud.points[at]).abs() <= tolerance.epsilon
         });

@@ -7,15 +7,11 @@
 
 use super::a_contrario::{Abc, Background, DELTA, EPS, Region, paint};
 use super::affine::Affine;
-use super::finish::{Finisher, MIN, STAGES, Wanted};
-use super::{Job, Method, MethodInfo, Param, ParamKind};
-use crate::detection::Detection;
-use crate::error::Result;
-use crate::map::{AnyView, DepthView, Pixel};
-use crate::noise::{NoiseModel, Space};
+use super::finish::{MIN, STAGES};
+use super::regions::{Input, Runner, Segment, Segmented};
+use super::{Job, MethodInfo, Param, ParamKind};
 use crate::random::Random;
 use crate::select::MAX_PLANES;
-use crate::with_view;
 use std::collections::BTreeSet;
 
 pub(super) static INFO: MethodInfo = MethodInfo {
@@ -31,7 +27,7 @@ pub(super) static INFO: MethodInfo = MethodInfo {
         };
         let [spacing, radius, draws] = [spacing, radius, draws].map(|value| value as usize);
         let (min, log10_eps, seed) = (min as usize, eps.log10(), seed as u64);
-        Ok(Box::new(Runner { min, log10_eps, delta, spacing, radius, draws, seed, finisher: Finisher::default() }))
+        Ok(Runner::boxed(Ppdfdm { min, log10_eps, delta, spacing, radius, draws, seed }))
     },
 };
 
@@ -81,7 +77,7 @@ const PARAMS: &[Param] = &[
     },
 ];
 
-struct Runner {
+struct Ppdfdm {
     min: usize,
     log10_eps: f64,
     delta: f64,
@@ -89,7 +85,6 @@ struct Runner {
     radius: usize,
     draws: usize,
     seed: u64,
-    finisher: Finisher,
 }
 
 /// A pixel with the plane around it.
@@ -100,34 +95,27 @@ struct Seed {
     share: f64,
 }
 
-impl Method for Runner {
-    fn info(&self) -> &'static MethodInfo {
-        &INFO
+impl Segment for Ppdfdm {
+    const INFO: &'static MethodInfo = &INFO;
+
+    fn min(&self) -> usize {
+        self.min
     }
 
-    fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        with_view!(map, map => self.ppdfdm(map, job, out))
-    }
-}
-
-impl Runner {
-    fn ppdfdm<T: Pixel>(&mut self, map: DepthView<'_, T>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        let affine = Affine::of(&map, Space::of(job.sensor.measure));
-        let noise = NoiseModel::of_map(&map, &job.sensor);
-        let mut background = Background::of(&affine, &noise, self.delta);
+    fn segment(&self, map: &Input<'_>, job: &mut Job<'_>) -> Segmented {
+        let noise = map.noise();
+        let mut background = Background::of(&map.affine, &noise, self.delta);
         let seeds = self.draw(&background);
         job.done("draw");
         let mut regions = self.search(&mut background, &seeds);
         job.done("search");
         merge(&background, &mut regions);
         job.done("merge");
-        let image = paint(regions.iter(), map.area());
-        let image = DepthView::new(&image, map.width(), map.height())?;
-        let valid_pixels = affine.valid_pixels;
-        let wanted = Wanted { min: self.min as u32, min_area: 0.0, noise: Some(&noise), valid_pixels };
-        self.finisher.finish(&map, &image, &wanted, job, out)
+        Segmented { image: paint(regions.iter(), map.affine.q.len()), noise: Some(noise) }
     }
+}
 
+impl Ppdfdm {
     /// The seeds of a regular grid with their planes, the best first.
     fn draw(&self, background: &Background<'_>) -> Vec<Seed> {
         let Affine { width, height, .. } = *background.affine;

@@ -16,7 +16,7 @@ pub(super) fn assign(
     patches: &[u32],
     regions: &[Region],
     region_of_patch: &[usize],
-    min: u32,
+    min: usize,
 ) -> Vec<u16> {
     let larger = larger(regions);
     let region = |at: usize| (patches[at] as usize).checked_sub(1).map(|patch| region_of_patch[patch]);
@@ -35,7 +35,7 @@ pub(super) fn assign(
     let mut numbers = vec![0; regions.len()];
     let mut planes = Vec::new();
     for (at, region) in regions.iter().enumerate() {
-        let is_kept = saved[at] > code.plane() && region.pixels > min as usize / 2 && planes.len() < MAX_PLANES;
+        let is_kept = saved[at] > code.plane() && region.pixels > min / 2 && planes.len() < MAX_PLANES;
         if let Some(plane) = region.plane.filter(|_| is_kept) {
             planes.push(plane);
             numbers[at] = planes.len() as u16;

@@ -11,15 +11,12 @@ mod block;
 mod code;
 mod merge;
 
-use super::affine::Affine;
-use super::finish::{Finisher, MIN, STAGES, Wanted};
+use super::finish::{MIN, STAGES};
+use super::noise::{NOISE, NOISE_GROWTH, of_kind, stated};
 use super::pieces::SEED;
-use super::{Job, Method, MethodInfo, Param, ParamKind};
-use crate::camera::Sensor;
-use crate::detection::Detection;
-use crate::error::Result;
-use crate::map::{AnyView, DepthView, Pixel};
-use crate::noise::{Estimator, NoiseModel, SensorNoise, Space, Steps};
+use super::regions::{Input, Runner, Segment, Segmented};
+use super::{Job, MethodInfo, Param, ParamKind};
+use crate::noise::{Estimator, NoiseModel, Space, Steps};
 use crate::random::Random;
 use crate::with_view;
 use code::Code;
@@ -33,33 +30,15 @@ pub(super) static INFO: MethodInfo = MethodInfo {
     build: |values| {
         INFO.check(values)?;
         let &[min, noise, growth, side, seed] = values else { panic!("one value for each row of PARAMS") };
-        let (min, side, seed) = (min as u32, side as usize, seed as u64);
-        Ok(Box::new(Runner { min, noise, growth, side, seed, finisher: Finisher::default() }))
+        let (min, side, seed) = (min as usize, side as usize, seed as u64);
+        Ok(Runner::boxed(Mdl { min, noise, growth, side, seed }))
     },
 };
 
 const PARAMS: &[Param] = &[
     MIN,
-    Param {
-        name: "noise",
-        default: 0.0,
-        min: 0.0,
-        max: f64::MAX,
-        kind: ParamKind::Real,
-        unit: "m or map units",
-        meaning: "Standard deviation of depth at range 0 in metres, of disparity in map units; with `noise-growth` 0 as well it is the preset's, or else estimated from the map.",
-        source: Some("Yang and Förstner 2010"),
-    },
-    Param {
-        name: "noise-growth",
-        default: 0.0,
-        min: 0.0,
-        max: f64::MAX,
-        kind: ParamKind::Real,
-        unit: "1/m",
-        meaning: "What the standard deviation of depth grows by with the square of the range, 0.0014 for a Kinect v1; not used for disparity.",
-        source: None,
-    },
+    Param { source: Some("Yang and Förstner 2010"), ..NOISE },
+    NOISE_GROWTH,
     Param {
         name: "block",
         default: 32.0,
@@ -73,64 +52,48 @@ const PARAMS: &[Param] = &[
     SEED,
 ];
 
-struct Runner {
-    min: u32,
+struct Mdl {
+    min: usize,
     noise: f64,
     growth: f64,
     side: usize,
     seed: u64,
-    finisher: Finisher,
 }
 
-impl Method for Runner {
-    fn info(&self) -> &'static MethodInfo {
-        &INFO
+impl Segment for Mdl {
+    const INFO: &'static MethodInfo = &INFO;
+
+    fn min(&self) -> usize {
+        self.min
     }
 
-    fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        let noise = self.noise(map, &job.sensor)?;
-        with_view!(map, map => self.mdl(map, &noise, job, out))
-    }
-}
-
-impl Runner {
-    fn mdl<T: Pixel>(
-        &mut self,
-        map: DepthView<'_, T>,
-        noise: &NoiseModel,
-        job: &mut Job<'_>,
-        out: &mut Detection,
-    ) -> Result<()> {
-        let affine = Affine::of(&map, Space::of(job.sensor.measure));
-        let code = Code::new(&affine, noise);
+    fn segment(&self, map: &Input<'_>, job: &mut Job<'_>) -> Segmented {
+        let (affine, noise) = (&map.affine, self.noise(map));
+        let code = Code::new(affine, &noise);
         job.done("noise");
-        let (patches, regions) = block::describe(&affine, &code, self.side, &mut Random::new(self.seed));
+        let (patches, regions) = block::describe(affine, &code, self.side, &mut Random::new(self.seed));
         job.done("blocks");
         let (regions, region_of_patch) = merge::merge(regions, &code);
-        let image = assign::assign(&affine, &code, &patches, &regions, &region_of_patch, self.min);
+        let image = assign::assign(affine, &code, &patches, &regions, &region_of_patch, self.min);
         job.done("merge");
-        let image = DepthView::new(&image, map.width(), map.height())?;
-        let wanted = Wanted { min: self.min, min_area: 0.0, noise: Some(noise), valid_pixels: affine.valid_pixels };
-        self.finisher.finish(&map, &image, &wanted, job, out)
+        Segmented { image, noise: Some(noise) }
     }
+}
 
+impl Mdl {
     /// The noise stated, the sensor's, or that of the map.
-    fn noise(&self, map: AnyView<'_>, sensor: &Sensor) -> Result<NoiseModel> {
-        let (measure, is_depth) = (sensor.measure, matches!(Space::of(sensor.measure), Space::InverseDepth { .. }));
-        let noise = |base, growth| match is_depth {
-            true => SensorNoise::Depth { base, growth },
-            false => SensorNoise::Value { sigma: base },
+    fn noise(&self, map: &Input<'_>) -> NoiseModel {
+        let measure = map.sensor.measure;
+        let step = with_view!(map.view, map => Steps::default().of(&map));
+        let model = |noise| NoiseModel::new(measure, noise, step);
+        let estimated = || {
+            let mut estimator = Estimator::default();
+            estimator.add(map.view, measure).ok()?;
+            model(estimator.estimate().ok()?.noise)
         };
-        let is_stated = self.noise > 0.0 || (is_depth && self.growth > 0.0);
-        let stated = is_stated.then(|| noise(self.noise, self.growth)).or(sensor.noise);
-        let step = with_view!(map, map => Steps::default().of(&map));
-        if let Some(model) = stated.and_then(|noise| NoiseModel::new(measure, noise, step)) {
-            return Ok(model);
-        }
-        let mut estimator = Estimator::default();
-        estimator.add(map, measure)?;
+        let stated = stated(Space::of(measure), self.noise, self.growth);
+        let noise = stated.or(map.sensor.noise).and_then(model).or_else(estimated);
         // Too few blocks tell nothing: then the steps are all there is.
-        let noise = estimator.estimate().map_or(noise(0.0, 0.0), |estimate| estimate.noise);
-        Ok(NoiseModel::new(measure, noise, step).expect("noise of the map's own kind"))
+        noise.or_else(|| model(of_kind(Space::of(measure), 0.0, 0.0))).expect("noise of the map's own kind")
     }
 }

@@ -11,8 +11,9 @@ use super::grow::{Region, Regions};
 use super::merge::Pair;
 use super::quadratic::{Frame, Sums};
 use super::tiles::Pyramid;
-use super::turns::{Border, Rays};
+use super::turns::Border;
 use crate::group::reserve_to;
+use crate::methods::rays::Rays;
 use crate::noise::NoiseModel;
 use std::ops::Range;
 

@@ -14,6 +14,7 @@ use crate::detection::Detection;
 use crate::error::Result;
 use crate::explanation::{Explanation, Finding, Limit, Verdict};
 use crate::map::AnyView;
+use crate::methods::noise::stated;
 use crate::methods::tries::{Change, Tries, rounded_down, rounded_up, smaller_min};
 use crate::methods::{Job, Method};
 use crate::noise::{NoiseModel, Space};
@@ -187,7 +188,7 @@ impl Seen {
         let Some(noise) = self.noise.filter(|_| self.q.is_finite()) else { return };
         let space = Space::of(self.sensor.measure);
         let is_of_map = |stated| NoiseModel::new(self.sensor.measure, stated, 0.0).is_some();
-        let source = match (run.params.noise(space), self.sensor.noise) {
+        let source = match (stated(space, run.params.noise, run.params.noise_growth), self.sensor.noise) {
             (Some(_), _) => "from the parameters",
             (None, Some(stated)) if is_of_map(stated) => "the sensor's, from its preset or table",
             _ => "estimated from the map",

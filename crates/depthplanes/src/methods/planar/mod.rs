@@ -29,13 +29,15 @@ mod tiles;
 mod turns;
 
 use super::finish::{Finisher, MIN, STAGES, Wanted};
+use super::noise::{NOISE, NOISE_GROWTH, stated};
+use super::rays::Rays;
 use super::{Job, Method, MethodInfo, Param, ParamKind};
 use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::explanation::Explanation;
 use crate::group::Grouper;
 use crate::map::{AnyView, DepthView, Pixel};
-use crate::noise::{NoiseModel, SensorNoise, Space};
+use crate::noise::{NoiseModel, Space};
 use crate::with_view;
 use bent::Bent;
 use contact::Contacts;
@@ -51,7 +53,6 @@ use reach::Reach;
 use seams::Seams;
 use strays::Strays;
 use tiles::{LEVELS, Pyramid};
-use turns::Rays;
 
 pub(super) static INFO: MethodInfo = MethodInfo {
     name: "planar",
@@ -77,26 +78,8 @@ const PARAMS: &[Param] = &[
         meaning: "A plane has at least this area; needs unit and camera; 0 for off.",
         source: None,
     },
-    Param {
-        name: "noise",
-        default: 0.0,
-        min: 0.0,
-        max: f64::MAX,
-        kind: ParamKind::Real,
-        unit: "m or map units",
-        meaning: "Standard deviation of depth at range 0 in metres, of disparity in map units; with `noise-growth` 0 as well it is the preset's, or else estimated from the map.",
-        source: None,
-    },
-    Param {
-        name: "noise-growth",
-        default: 0.0,
-        min: 0.0,
-        max: f64::MAX,
-        kind: ParamKind::Real,
-        unit: "1/m",
-        meaning: "What the standard deviation of depth grows by with the square of the range, 0.0014 for a Kinect v1; not used for disparity.",
-        source: None,
-    },
+    NOISE,
+    NOISE_GROWTH,
     Param {
         name: "ray",
         // Rendered maps scatter by 0.06 (ICL-NUIM), and no camera is calibrated to much better.
@@ -160,15 +143,6 @@ impl Planar {
     /// What pixels are held against.
     fn planes<'a>(&self, regions: &'a [Region], noise: &'a NoiseModel, curved: bool) -> Planes<'a> {
         Planes { regions, noise, ray: self.ray, confidence: self.confidence, curved }
-    }
-
-    /// What the parameters say of the noise, if anything.
-    fn noise(&self, space: Space) -> Option<SensorNoise> {
-        let is_stated = self.noise > 0.0 || (space != Space::Value && self.noise_growth > 0.0);
-        is_stated.then_some(match space {
-            Space::InverseDepth { .. } => SensorNoise::Depth { base: self.noise, growth: self.noise_growth },
-            Space::Value => SensorNoise::Value { sigma: self.noise },
-        })
     }
 }
 
@@ -292,7 +266,7 @@ impl Runner {
         field.prepare(map);
         pyramid.sum(map, space, job.threads, field);
         let model = |noise| NoiseModel::new(sensor.measure, noise, field.step);
-        let stated = params.noise(space).or(sensor.noise).and_then(model);
+        let stated = stated(space, params.noise, params.noise_growth).or(sensor.noise).and_then(model);
         let estimated = || Some(model(level.estimate(&pyramid.grids[LEVELS - 1], space))?.of_scatter());
         stated.or_else(estimated).expect("an estimate is of the map's own kind")
     }

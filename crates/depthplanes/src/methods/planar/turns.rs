@@ -8,7 +8,7 @@
 use super::curved::CellBox;
 use super::grid::{Grid, NONE};
 use super::grow::Region;
-use crate::camera::{Intrinsics, Measure, Sensor};
+use crate::methods::rays::{Rays, Vec3, dot, sub};
 
 /// Sine of the largest angle, 23.5 degrees, at which a surface turns gently. Spheres are modelled with 16 segments and more,
 /// which turn by 22.5 degrees, and noise makes a degree of difference; people build with sharper edges.
@@ -30,47 +30,14 @@ const HALF: f32 = 8.0;
 /// Valid pixels of a tile over which a surface goes on: a gap takes a column of four from one tile, or from two.
 const WHOLE: f32 = 13.0;
 
-/// Rays of the pixels, and inverse depth up to a factor, which angles do not depend on.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Rays {
-    camera: Intrinsics,
-    /// Inverse depth is `slope q + offset`.
-    slope: f64,
-    offset: f64,
-}
-
-impl Rays {
-    /// Of a sensor; where its camera is not known, of one that sees 53 degrees along the longer side.
-    pub(super) fn of(sensor: &Sensor, width: usize, height: usize) -> Self {
-        let [w, h] = [width, height].map(|side| side as f64);
-        let usual = Intrinsics { fx: w.max(h), fy: w.max(h), cx: w / 2.0, cy: h / 2.0 };
-        let (slope, offset) = match sensor.measure {
-            Measure::InverseDepth { slope, offset } => (slope, offset),
-            Measure::Depth { .. } | Measure::Disparity => (1.0, 0.0),
-        };
-        Rays { camera: sensor.intrinsics.unwrap_or(usual), slope, offset }
-    }
-
-    fn point(&self, [u, v]: [f64; 2], q: f64) -> [f64; 3] {
-        let Intrinsics { fx, fy, cx, cy } = self.camera;
-        let depth = 1.0 / (self.slope * q + self.offset);
-        [(u - cx) / fx * depth, (v - cy) / fy * depth, depth]
-    }
-
-    /// n of a region's plane `n . point = 1`.
-    fn normal(&self, region: &Region) -> [f64; 3] {
-        let Intrinsics { fx, fy, cx, cy } = self.camera;
-        let [a, b, _] = region.abc;
-        [self.slope * a * fx, self.slope * b * fy, self.slope * region.at(cx, cy) + self.offset]
-    }
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+/// n of a region's plane `n . point = 1`.
+fn normal_of(rays: &Rays, region: &Region) -> Vec3 {
+    let [a, b, _] = region.abc;
+    rays.inverse([a, b], |u, v| region.at(u, v))
 }
 
 /// Whether two planes differ by a small angle.
-fn is_gentle(a: [f64; 3], b: [f64; 3]) -> bool {
+fn is_gentle(a: Vec3, b: Vec3) -> bool {
     let (both, squares) = (dot(a, b), dot(a, a) * dot(b, b));
     both > 0.0 && squares - both * both <= ANGLE * ANGLE * squares
 }
@@ -87,7 +54,7 @@ impl Border<'_> {
     /// Whether beyond much of the border the surface goes on and turns gently.
     pub(super) fn turns(&self, around: &CellBox) -> bool {
         let grid = self.grid;
-        let normal = self.rays.normal(&self.all[self.id as usize]);
+        let normal = normal_of(self.rays, &self.all[self.id as usize]);
         let [mut places, mut gentle] = [0.0; 2];
         for row in around.first[1]..=around.last[1] {
             for column in around.first[0]..=around.last[0] {
@@ -124,7 +91,7 @@ impl Border<'_> {
     }
 
     /// Whether the surface turns gently between a tile and one two steps off.
-    fn turns_to(&self, normal: [f64; 3], tile: [usize; 2], far: [usize; 2], step: [f64; 2]) -> bool {
+    fn turns_to(&self, normal: Vec3, tile: [usize; 2], far: [usize; 2], step: [f64; 2]) -> bool {
         let Border { grid, all, rays, id } = self;
         let region = &all[*id as usize];
         let at = far[1] * grid.columns + far[0];
@@ -145,12 +112,12 @@ impl Border<'_> {
             // Growth may have crossed the edge; the planes themselves say where it is.
             let inner = [0, 1].map(|i| own[i] - 0.5 * side * step[i]);
             let [before, behind] = [inner, [u, v]].map(|[u, v]| other.at(u, v) - region.at(u, v));
-            return before * behind < 0.0 && is_gentle(normal, rays.normal(other));
+            return before * behind < 0.0 && is_gentle(normal, normal_of(rays, other));
         }
         let edge = [0, 1].map(|i| own[i] + 0.5 * side * step[i]);
-        let from = rays.point(edge, region.at(edge[0], edge[1]));
-        let (to, straight) = (rays.point([u, v], q), rays.point([u, v], on_plane));
-        let [to, straight] = [to, straight].map(|point| [0, 1, 2].map(|i| point[i] - from[i]));
+        let from = rays.at(edge, region.at(edge[0], edge[1]));
+        let (to, straight) = (rays.at([u, v], q), rays.at([u, v], on_plane));
+        let [to, straight] = [to, straight].map(|point| sub(point, from));
         // What lies far behind an edge is many times as far off as the plane itself is there, or the other way round; what
         // folds back lies on the edge's other side.
         let apart = dot(normal, to);

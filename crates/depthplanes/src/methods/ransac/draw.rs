@@ -5,8 +5,8 @@
 
 use super::score::{Candidate, Free};
 use crate::methods::affine::Affine;
-use crate::methods::cloud::{Plane3, dot};
 use crate::methods::pieces::Pieces;
+use crate::methods::rays::{Plane3, dot};
 use crate::random::Random;
 
 /// Columns and rows of the smallest cells.

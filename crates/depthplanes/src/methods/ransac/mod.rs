@@ -11,16 +11,12 @@ mod score;
 
 use super::affine::Affine;
 use super::cloud::Cloud;
-use super::finish::{Finisher, MIN, STAGES, Wanted};
+use super::finish::{MIN, STAGES};
 use super::pieces::{EPSILON, Pieces, SEED, Tolerance};
-use super::{Job, Method, MethodInfo, Param, ParamKind};
-use crate::detection::Detection;
-use crate::error::Result;
-use crate::map::{AnyView, DepthView, Pixel};
-use crate::noise::Space;
+use super::regions::{Input, Runner, Segment, Segmented};
+use super::{Job, MethodInfo, Param, ParamKind};
 use crate::random::Random;
 use crate::select::MAX_PLANES;
-use crate::with_view;
 use draw::Draws;
 use score::{Candidate, Free};
 
@@ -37,8 +33,8 @@ pub(super) static INFO: MethodInfo = MethodInfo {
         };
         // Rounding may not cost a flat wall its points.
         let cosine = angle.to_radians().cos() - 1e-9;
-        let (min, reach, seed) = (min as u32, reach as usize, seed as u64);
-        Ok(Box::new(Runner { min, epsilon, cosine, overlooked, reach, seed, finisher: Finisher::default() }))
+        let (min, reach, seed) = (min as usize, reach as usize, seed as u64);
+        Ok(Runner::boxed(Ransac { min, epsilon, cosine, overlooked, reach, seed }))
     },
 };
 
@@ -83,38 +79,32 @@ const BATCH: usize = 128;
 /// Share of the largest piece that is as good, since planes are fitted to their pieces (our choice).
 const GOOD: f64 = 0.9;
 
-struct Runner {
-    min: u32,
+struct Ransac {
+    min: usize,
     epsilon: f64,
     cosine: f64,
     overlooked: f64,
     reach: usize,
     seed: u64,
-    finisher: Finisher,
 }
 
-impl Method for Runner {
-    fn info(&self) -> &'static MethodInfo {
-        &INFO
+impl Segment for Ransac {
+    const INFO: &'static MethodInfo = &INFO;
+
+    fn min(&self) -> usize {
+        self.min
     }
 
-    fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        with_view!(map, map => self.ransac(map, job, out))
-    }
-}
-
-impl Runner {
-    fn ransac<T: Pixel>(&mut self, map: DepthView<'_, T>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        let affine = Affine::of(&map, Space::of(job.sensor.measure));
-        let cloud = Cloud::of(&affine, &job.sensor, self.reach);
+    fn segment(&self, map: &Input<'_>, job: &mut Job<'_>) -> Segmented {
+        let cloud = Cloud::of(&map.affine, &map.sensor, self.reach);
         job.done("points");
-        let image = self.search(&affine, &cloud);
+        let image = self.search(&map.affine, &cloud);
         job.done("search");
-        let image = DepthView::new(&image, map.width(), map.height())?;
-        let wanted = Wanted { min: self.min, min_area: 0.0, noise: None, valid_pixels: affine.valid_pixels };
-        self.finisher.finish(&map, &image, &wanted, job, out)
+        Segmented { image, noise: None }
     }
+}
 
+impl Ransac {
     /// The region of every pixel, 0 for none (section 4 of Schnabel et al.).
     fn search(&self, affine: &Affine, cloud: &Cloud) -> Vec<u16> {
         let mut random = Random::new(self.seed);
@@ -122,19 +112,19 @@ impl Runner {
         let mut free = Free::new(cloud, &mut random);
         let mut draws = Draws::new(affine);
         let mut candidates: Vec<Candidate> = Vec::new();
-        while free.len() > self.min as usize && pieces.count() < MAX_PLANES {
+        while free.len() > self.min && pieces.count() < MAX_PLANES {
             candidates.extend((0..BATCH).filter_map(|_| draws.draw(&free, &pieces, &mut random)));
-            candidates.retain(|candidate| candidate.most > f64::from(self.min));
+            candidates.retain(|candidate| candidate.most > self.min as f64);
             while let Some(best) = self.best(&mut candidates, &free, &mut pieces, &draws) {
                 let Candidate { plane, samples, .. } = candidates.swap_remove(best);
-                if let Some(size) = pieces.take(&plane, &samples, self.min as usize) {
+                if let Some(size) = pieces.take(&plane, &samples, self.min) {
                     draws.forget(size as f64 / free.len() as f64);
                     free.retain(&pieces);
                     candidates.retain(|candidate| candidate.samples.iter().all(|&at| pieces.is_free(at as usize)));
                     candidates.iter_mut().for_each(Candidate::restart);
                 }
             }
-            if draws.missed(f64::from(self.min) + 1.0, free.len()) < self.overlooked {
+            if draws.missed(self.min as f64 + 1.0, free.len()) < self.overlooked {
                 break;
             }
         }
@@ -162,7 +152,7 @@ impl Runner {
                 return Some(known);
             }
             candidates[top].refine(free, pieces);
-            if candidates[top].most <= f64::from(self.min) {
+            if candidates[top].most <= self.min as f64 {
                 candidates.swap_remove(top);
             }
         }

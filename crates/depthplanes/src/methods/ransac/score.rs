@@ -3,8 +3,9 @@
 //! In: a plane, points in random order. Out: bounds of the number of all points on it, from those of the first 512, 1024
 //! and so on, until its connected piece is no larger than what was looked at.
 
-use crate::methods::cloud::{Cloud, Plane3, Vec3};
+use crate::methods::cloud::Cloud;
 use crate::methods::pieces::{Pieces, Tolerance};
+use crate::methods::rays::{Plane3, Vec3};
 use crate::random::Random;
 
 /// Points of the first subset.

@@ -1,0 +1,40 @@
+//! What the parameters of `planar` and `mdl` say of a map's noise.
+
+use super::{Param, ParamKind};
+use crate::noise::{SensorNoise, Space};
+
+pub(super) const NOISE: Param = Param {
+    name: "noise",
+    default: 0.0,
+    min: 0.0,
+    max: f64::MAX,
+    kind: ParamKind::Real,
+    unit: "m or map units",
+    meaning: "Standard deviation of depth at range 0 in metres, of disparity in map units; with `noise-growth` 0 as well it is the preset's, or else estimated from the map.",
+    source: None,
+};
+
+pub(super) const NOISE_GROWTH: Param = Param {
+    name: "noise-growth",
+    default: 0.0,
+    min: 0.0,
+    max: f64::MAX,
+    kind: ParamKind::Real,
+    unit: "1/m",
+    meaning: "What the standard deviation of depth grows by with the square of the range, 0.0014 for a Kinect v1; not used for disparity.",
+    source: None,
+};
+
+/// The noise that [`NOISE`] and [`NOISE_GROWTH`] state; none if they are 0.
+pub(super) fn stated(space: Space, noise: f64, growth: f64) -> Option<SensorNoise> {
+    let is_stated = noise > 0.0 || (space != Space::Value && growth > 0.0);
+    is_stated.then(|| of_kind(space, noise, growth))
+}
+
+/// Noise of the kind that a map has.
+pub(super) fn of_kind(space: Space, base: f64, growth: f64) -> SensorNoise {
+    match space {
+        Space::InverseDepth { .. } => SensorNoise::Depth { base, growth },
+        Space::Value => SensorNoise::Value { sigma: base },
+    }
+}
