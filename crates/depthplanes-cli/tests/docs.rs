@@ -7,6 +7,7 @@
 
 mod support;
 
+use depthplanes::methods::METHODS;
 use depthplanes_io::encoding::ENCODINGS;
 use depthplanes_io::formats::FORMATS;
 use depthplanes_io::outputs::OUTPUTS;
@@ -133,6 +134,8 @@ fn the_tables_of_the_readme_are_the_libraries_tables() {
     let filled = fill(&text, "formats", "| format | names | about |", formats);
     let filled = fill(&filled, "encodings", "| encoding | unit | about |", encodings);
     let filled = fill(&filled, "outputs", "| flag | file | about |", outputs);
+    let [heading, rows] = results();
+    let filled = fill(&filled, "methods", &heading[0], rows.into_iter());
     if update() {
         std::fs::write(path, &filled).unwrap();
     } else {
@@ -140,13 +143,44 @@ fn the_tables_of_the_readme_are_the_libraries_tables() {
     }
 }
 
-/// The text with a table of three columns between the markers of that name.
+/// Heading and rows of a table: each method with its correct planes on each set of docs/results.md, and its time on the
+/// first.
+fn results() -> [Vec<String>; 2] {
+    let text = std::fs::read_to_string(root().join("docs/results.md")).unwrap();
+    let mut heading = "| method |".to_string();
+    let mut rows: Vec<String> = METHODS.iter().map(|method| format!("| `{}` |", method.name)).collect();
+    let mut times = vec![String::new(); rows.len()];
+    for section in text.split("\n## ").skip(1) {
+        let cells = |line: &str| line.split('|').map(|cell| cell.trim().to_string()).collect::<Vec<_>>();
+        let mut lines = section.lines().filter(|line| line.starts_with('|'));
+        let head = cells(lines.next().expect("a table in each section"));
+        let column = |name: &str| head.iter().position(|cell| cell == name);
+        let (Some(truth), Some(correct), Some(time)) = (column("truth"), column("correct"), column("ms/MP")) else {
+            continue; // a set without a truth
+        };
+        let lines: Vec<Vec<String>> = lines.skip(1).map(cells).collect();
+        heading += &format!(" {}, {} planes |", section.lines().next().unwrap(), lines[0][truth]);
+        for ((method, row), ms) in METHODS.iter().zip(&mut rows).zip(&mut times) {
+            let line = lines.iter().find(|line| line[1] == method.name).expect("a row for each method");
+            *row += &format!(" {} |", line[correct]);
+            if ms.is_empty() {
+                *ms = format!(" {} |", line[time]);
+            }
+        }
+    }
+    heading += " ms for a megapixel |";
+    let whole = rows.into_iter().zip(times).map(|(row, ms)| row + &ms);
+    [vec![heading], whole.collect()]
+}
+
+/// The text with a table between the markers of that name.
 fn fill(text: &str, marker: &str, heading: &str, rows: impl Iterator<Item = String>) -> String {
     let (open, close) = (format!("<!-- {marker} -->\n"), format!("<!-- /{marker} -->"));
     let (before, rest) = text.split_once(&open).unwrap_or_else(|| panic!("no {open}"));
     let (_, after) = rest.split_once(&close).unwrap_or_else(|| panic!("no {close}"));
     let rows: Vec<String> = rows.collect();
-    format!("{before}{open}{heading}\n|---|---|---|\n{}\n{close}{after}", rows.join("\n"))
+    let rule = "|---".repeat(heading.matches('|').count() - 1) + "|";
+    format!("{before}{open}{heading}\n{rule}\n{}\n{close}{after}", rows.join("\n"))
 }
 
 #[test]
