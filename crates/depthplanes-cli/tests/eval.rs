@@ -86,6 +86,7 @@ fn what_is_wrong_with_a_set_is_said() {
     says(&["evops=empty"], "no map of this set is in it; it needs NAME.depth.png");
     says(&["scene:planes3:seed=9-2"], "seed=9-2 is no range");
     says(&["scene:nothing"], "nothing");
+    says(&["scene:planes3", "scene:planes3"], "twice; give each set once");
     bench.write("empty/a.depth.png", b"");
     says(&["evops=empty"], "its truth empty/a.labels.png is not there");
     assert!(!bench.folder.join("report/report.html").exists());
@@ -105,7 +106,8 @@ fn every_set_of_recorded_maps_is_read() {
     bench.run(&words).ok();
     let all = rows(&bench, "report/rows.jsonl");
     let scored = |set: &str| {
-        let of_set: Vec<&Value> = all.iter().filter(|row| row["dataset"] == set).collect();
+        let is_of_set = |row: &&Value| row["dataset"].as_str().unwrap().split(' ').next() == Some(set);
+        let of_set: Vec<&Value> = all.iter().filter(is_of_set).collect();
         let correct = |row: &&Value| row["outcome"]["found"]["scores"]["segcomp.correct"].as_f64();
         (of_set.len(), of_set.iter().filter_map(correct).sum::<f64>())
     };

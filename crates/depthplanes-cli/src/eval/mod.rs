@@ -19,6 +19,7 @@ use datasets::Item;
 use indicatif::{ProgressBar, ProgressStyle};
 use report::Section;
 use rows::{Key, Row, Store};
+use std::collections::HashSet;
 use std::io::Write;
 use std::path::Path;
 use task::{Maker, Task};
@@ -73,13 +74,21 @@ fn finish(title: &str, folder: &Path, rows: &[&Row], sections: &[Section], out: 
 /// The maps of all sets.
 ///
 /// # Errors
-/// A set that is unknown, not there or without maps.
+/// A set that is unknown, not there or without maps; two maps of one name in one set, whose rows could not be told apart.
 fn items(words: &[String], data: Option<&Path>) -> Outcome<Vec<Item>> {
     let mut items = Vec::new();
     for word in words {
         items.extend(datasets::find(word, data)?);
     }
-    Ok(items)
+    let mut names = HashSet::new();
+    match items.iter().find(|item| !names.insert((&item.dataset, &item.name))) {
+        Some(Item { dataset, name, .. }) => {
+            let message =
+                format!("{dataset} has a map {name} twice; give each set once, and folders of different names");
+            Err(Failure::request(message))
+        }
+        None => Ok(items),
+    }
 }
 
 /// Every map by every method, the methods of a map together.
