@@ -53,13 +53,16 @@ impl Steps {
         seen.clear();
         seen.resize(1 << (8 * size_of::<T>()), false);
         let validity = map.validity();
-        let mut places = [0; GROUP];
-        for values in map.rows().step_by(map.area().div_ceil(SAMPLE)).flat_map(|row| row.chunks(GROUP)) {
-            for (place, &value) in places.iter_mut().zip(values) {
-                // Without a branch: 0 stands for the values that do not count.
-                *place = if validity.holds(value) { value.to_f32() as u32 } else { 0 };
+        // Without a branch: 0 stands for the values that do not count.
+        let place = |value: T| if validity.holds(value) { value.to_f32() as u32 } else { 0 };
+        for row in map.rows().step_by(map.area().div_ceil(SAMPLE)) {
+            let (groups, rest) = row.as_chunks::<GROUP>();
+            for group in groups {
+                let mut places = [0; GROUP];
+                (0..GROUP).for_each(|i| places[i] = place(group[i]));
+                places.into_iter().for_each(|place| seen[place as usize] = true);
             }
-            places[..values.len()].iter().for_each(|&place| seen[place as usize] = true);
+            rest.iter().for_each(|&value| seen[place(value) as usize] = true);
         }
         seen[0] = false;
     }
@@ -68,8 +71,8 @@ impl Steps {
     fn steps(&self) -> [u32; FAR + 1] {
         let mut steps = [0; FAR + 1];
         let mut last = None;
-        for (first, values) in (0..).step_by(GROUP).zip(self.seen.chunks(GROUP)) {
-            if values.iter().fold(false, |any, &seen| any | seen) {
+        for (first, values) in (0..).step_by(GROUP).zip(self.seen.as_chunks::<GROUP>().0) {
+            if *values != [false; GROUP] {
                 for (value, _) in (first..).zip(values).filter(|(_, seen)| **seen) {
                     if let Some(last) = last.replace(value) {
                         steps[FAR.min(value - last)] += 1;

@@ -81,7 +81,7 @@ fn assign_row(
             label_inside(stride, planes, id, column..end, row, q, image);
             column = end;
         } else {
-            let near = Near::new([tiles, blocks], column, row);
+            let near = Near::new(tiles, column, row);
             let at = column * BLOCK;
             if near.count > 0 {
                 let mut block =
@@ -163,12 +163,15 @@ pub(super) struct Held {
 /// Which planes [`assign`] holds the pixel in column `u`, row `v` against.
 pub(super) fn held_against(grids: [&Grid; 2], [u, v]: [usize; 2]) -> Held {
     let [column, row] = [u / BLOCK, v / BLOCK];
-    let near = Near::new(grids, column, row);
+    let near = Near::new(grids[0], column, row);
     let middle = [column, row].map(|place| (place * BLOCK) as f64 + HALF);
     Held { ids: near.ids().to_vec(), middle, factor: if is_inside(grids[1], column, row) { INSIDE } else { 1.0 } }
 }
 
-/// The regions of the tiles of a block and of those up to two tiles around it.
+/// Tiles of a row that are looked at for a block: its own two, two on either side, and two that do not count.
+const AROUND: usize = 8;
+
+/// The regions of the tiles of a block and of those up to two tiles around it, the smallest number first.
 struct Near {
     ids: [u32; MOST],
     count: usize,
@@ -176,28 +179,28 @@ struct Near {
 
 impl Near {
     #[inline(always)]
-    fn new([tiles, blocks]: [&Grid; 2], column: usize, row: usize) -> Self {
+    fn new(tiles: &Grid, column: usize, row: usize) -> Self {
         let mut near = Near { ids: [NONE; MOST], count: 0 };
-        for y in row.saturating_sub(1)..(row + 2).min(blocks.rows) {
-            for x in column.saturating_sub(1)..(column + 2).min(blocks.columns) {
-                match blocks.region[y * blocks.columns + x] {
-                    NONE => [0, 1].into_iter().for_each(|below| {
-                        let first = (2 * y + below) * tiles.columns + 2 * x;
-                        tiles.region[first..first + 2].iter().for_each(|&id| near.include(id));
-                    }),
-                    id => near.include(id),
-                }
+        let first = (2 * column).saturating_sub(2).min(tiles.columns - AROUND);
+        let mut left = [[NONE; AROUND]; 6];
+        for (y, left) in left.iter_mut().enumerate() {
+            let y = (2 * row + y).saturating_sub(2).min(tiles.rows - 1);
+            let ids = tiles.region[y * tiles.columns + first..].first_chunk::<AROUND>().expect("so many tiles");
+            for x in 0..AROUND {
+                let is_near = (first + x + 2 >= 2 * column) & (first + x <= 2 * column + 3);
+                left[x] = if is_near { ids[x] } else { NONE };
             }
         }
-        near
-    }
-
-    #[inline(always)]
-    fn include(&mut self, id: u32) {
-        if id != NONE && self.count < MOST && !self.ids().contains(&id) {
-            self.ids[self.count] = id;
-            self.count += 1;
+        while near.count < MOST {
+            let least = left.as_flattened().iter().fold(NONE, |least, &id| least.min(id));
+            if least == NONE {
+                break;
+            }
+            near.ids[near.count] = least;
+            near.count += 1;
+            left.as_flattened_mut().iter_mut().for_each(|id| *id = if *id == least { NONE } else { *id });
         }
+        near
     }
 
     fn ids(&self) -> &[u32] {

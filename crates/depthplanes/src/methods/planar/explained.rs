@@ -85,25 +85,38 @@ fn is_near(own: &Region, larger: &Region) -> bool {
 
 /// The share of a region's pixels that lies on other planes, of those that lie on its own.
 fn share_on(field: &Field, grid: &Grid, planes: &Planes<'_>, id: u32, others: &[u32], around: &CellBox) -> f64 {
-    let (mut pixels, mut by_others) = (0, 0);
+    let [mut pixels, mut by_others] = [0; 2];
     for row in around.first[1]..=around.last[1] {
         for column in around.first[0]..=around.last[0] {
             let at = row * grid.columns + column;
             if grid.region[at] != id {
                 continue;
             }
-            let most = planes.reach(planes.region(id), grid.q(at));
-            for v in row * SIDE..(row + 1) * SIDE {
-                for u in column * SIDE..(column + 1) * SIDE {
-                    let q = f64::from(field.q[v * field.stride + u]);
-                    let lies_on = |id: u32| (q - planes.region(id).at(u as f64, v as f64)).powi(2) <= most;
-                    if lies_on(id) {
-                        pixels += 1;
-                        by_others += u32::from(others.iter().any(|&other| lies_on(other)));
-                    }
-                }
-            }
+            let most = planes.reach(planes.region(id), grid.q(at)) as f32;
+            let lie_on = |id: u32| field.lie_on([column, row], planes.region(id), most);
+            let own = lie_on(id);
+            pixels += own.count_ones();
+            by_others += (own & others.iter().fold(0, |any, &other| any | lie_on(other))).count_ones();
         }
     }
     f64::from(by_others) / f64::from(pixels.max(1))
+}
+
+impl Field {
+    /// Which pixels of a tile are no further from a region's plane than the root of `most`, a bit for each.
+    #[inline(always)]
+    fn lie_on(&self, tile: [usize; 2], region: &Region, most: f32) -> u32 {
+        let [u, v] = tile.map(|place| place * SIDE);
+        let [a, b, _] = region.abc.map(|number| number as f32);
+        let c = region.at(u as f64, v as f64) as f32;
+        let mut bits = 0;
+        for dv in 0..SIDE {
+            let q = &self.q[(v + dv) * self.stride + u..][..SIDE];
+            for du in 0..SIDE {
+                let off = q[du] - (a * du as f32 + b * dv as f32 + c);
+                bits |= u32::from(off * off <= most) << (SIDE * dv + du); // not for NaN
+            }
+        }
+        bits
+    }
 }

@@ -216,16 +216,16 @@ impl Grid {
         Some(passed + row[passed..].iter().position(|&id| id == NONE)?)
     }
 
-    /// The four neighbours of a cell.
+    /// The four neighbours of a cell; at the map's edge itself in place of those that are missing.
     #[inline(always)]
-    pub(super) fn neighbours(&self, Place { column, row }: Place) -> impl Iterator<Item = Place> + use<> {
-        let beside = [
-            (column > 0).then(|| Place { column: column - 1, row }),
-            ((column as usize) + 1 < self.columns).then(|| Place { column: column + 1, row }),
-            (row > 0).then(|| Place { column, row: row - 1 }),
-            ((row as usize) + 1 < self.rows).then(|| Place { column, row: row + 1 }),
-        ];
-        beside.into_iter().flatten()
+    pub(super) fn neighbours(&self, Place { column, row }: Place) -> [Place; 4] {
+        let [right, below] = [(column + 1).min(self.columns as u32 - 1), (row + 1).min(self.rows as u32 - 1)];
+        [
+            Place { column: column.saturating_sub(1), row },
+            Place { column: right, row },
+            Place { column, row: row.saturating_sub(1) },
+            Place { column, row: below },
+        ]
     }
 }
 

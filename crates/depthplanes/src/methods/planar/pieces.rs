@@ -12,8 +12,10 @@ use crate::group::{Grouper, reserve_to, vectorised};
 /// Pixels of a row that are looked at together.
 const ABREAST: usize = 32;
 
-/// What lies beyond the image.
-const NOTHING: [u16; ABREAST] = [0; ABREAST];
+/// Pixels that have to follow an image of rows of `stride`, for what lies two rows and two columns on to be there.
+pub(super) fn slack(stride: usize) -> usize {
+    2 * stride + ABREAST
+}
 
 /// Joins pieces; reuses its memory.
 #[derive(Debug, Default)]
@@ -46,7 +48,6 @@ impl Pieces {
                     let ways = (rest >> shift) as u8;
                     rest &= !(0xff << shift);
                     let u = first + shift as usize / 8;
-                    let own = grouper.groups().at([u, v]);
                     // Where each leads, and what lies between.
                     let (right, below, left) = ([u + 1, v], [u, v + 1], [u.wrapping_sub(1), v]);
                     let to = [
@@ -58,7 +59,7 @@ impl Pieces {
                     for (way, ([x, y], between)) in to.into_iter().enumerate() {
                         let is_there = ways >> way & 1 > 0 && x < width && y < height;
                         if is_there && between.into_iter().any(is_missing) {
-                            list(own, grouper.groups().at([x, y]), pairs);
+                            list(grouper.groups().at([u, v]), grouper.groups().at([x, y]), pairs);
                         }
                     }
                 }
@@ -80,10 +81,9 @@ fn list(a: u32, b: u32, pairs: &mut Vec<[u32; 2]>) {
 #[inline(always)]
 fn find_apart(image: &[u16], row: usize, apart: &mut [u8]) {
     let stride = apart.len();
+    let part = |first: usize| image[first..].first_chunk::<ABREAST>().expect("pixels that follow the image");
     for (apart, at) in apart.as_chunks_mut::<ABREAST>().0.iter_mut().zip((row..).step_by(ABREAST)) {
-        let part = |first: usize| image.get(first..).and_then(|from| from.first_chunk::<ABREAST>());
-        let here = part(at).expect("rows of whole parts");
-        let (right, below) = (part(at + 1).unwrap_or(&NOTHING), part(at + stride).unwrap_or(&NOTHING));
+        let (here, right, below) = (part(at), part(at + 1), part(at + stride));
         let mut any = 0;
         for i in 0..ABREAST {
             any |= (here[i] ^ right[i]) | (here[i] ^ below[i]);
@@ -92,10 +92,10 @@ fn find_apart(image: &[u16], row: usize, apart: &mut [u8]) {
         if any == 0 {
             continue;
         }
-        let (second, lower) = (part(at + 2).unwrap_or(&NOTHING), part(at + 2 * stride).unwrap_or(&NOTHING));
-        let (across, back) = (part(at + stride + 1).unwrap_or(&NOTHING), part(at + stride - 1).unwrap_or(&NOTHING));
-        let left = part(at.wrapping_sub(1)).unwrap_or(&NOTHING);
-        let (corner, foot) = (part(at + stride + 2).unwrap_or(&NOTHING), part(at + 2 * stride + 1).unwrap_or(&NOTHING));
+        let (second, lower) = (part(at + 2), part(at + 2 * stride));
+        let (across, back) = (part(at + stride + 1), part(at + stride - 1));
+        let left = part(at.saturating_sub(1));
+        let (corner, foot) = (part(at + stride + 2), part(at + 2 * stride + 1));
         for i in 0..ABREAST {
             let own = here[i];
             let is_plane = (own != 0) & (own != BENT);

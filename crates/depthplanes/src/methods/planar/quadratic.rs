@@ -28,6 +28,14 @@ pub(super) struct Sums {
 /// (j, i) of the terms 1, x, y, x^2, x y, y^2.
 const TERMS: [[usize; 2]; 6] = [[0, 0], [0, 1], [1, 0], [0, 2], [1, 1], [2, 0]];
 
+/// Normal equations in echelon form.
+struct Eliminated {
+    matrix: [[f64; 6]; 6],
+    right: [f64; 6],
+    /// Which terms the cells determine beyond those before.
+    pivots: [bool; 6],
+}
+
 impl Sums {
     /// Adds cells of one row, summed along it: `powers[i]` of `w x^i`, `right[i]` of `w r x^i`.
     fn add_row(&mut self, y: f64, powers: [f64; 5], right: [f64; 3]) {
@@ -68,16 +76,19 @@ impl Sums {
         TERMS.map(|[j, i]| self.right[j][i])
     }
 
-    /// The least-squares coefficients of the first N terms; those that the cells do not determine are 0.
-    pub(super) fn solve<const N: usize>(&self) -> [f64; 6] {
+    /// The normal equations of the first N terms, those before a term taken out of it: what a term explains beyond them
+    /// is its right side squared over its pivot.
+    #[inline(always)]
+    fn eliminate<const N: usize>(&self) -> Eliminated {
         let (mut m, mut r) = (self.matrix(), self.right());
         let diagonal: [f64; 6] = std::array::from_fn(|i| m[i][i]);
         let mut pivots = [false; 6];
         for i in 0..N {
             pivots[i] = m[i][i] > 1e-9 * diagonal[i];
             if pivots[i] {
+                let per_pivot = 1.0 / m[i][i];
                 for k in i + 1..N {
-                    let factor = m[k][i] / m[i][i];
+                    let factor = m[k][i] * per_pivot;
                     r[k] -= factor * r[i];
                     for j in i..N {
                         m[k][j] -= factor * m[i][j];
@@ -85,6 +96,12 @@ impl Sums {
                 }
             }
         }
+        Eliminated { matrix: m, right: r, pivots }
+    }
+
+    /// The least-squares coefficients of the first N terms; those that the cells do not determine are 0.
+    pub(super) fn solve<const N: usize>(&self) -> [f64; 6] {
+        let Eliminated { matrix: m, right: r, pivots } = self.eliminate::<N>();
         let mut solution = [0.0; 6];
         for i in (0..6).rev().filter(|&i| pivots[i]) {
             let known: f64 = (i + 1..N).map(|j| m[i][j] * solution[j]).sum();
@@ -95,7 +112,8 @@ impl Sums {
 
     /// What a quadratic explains beyond a plane.
     pub(super) fn bow(&self) -> f64 {
-        self.left_by(&self.solve::<3>()) - self.left_by(&self.solve::<6>())
+        let Eliminated { matrix, right, pivots } = self.eliminate::<6>();
+        (3..6).filter(|&i| pivots[i]).map(|i| right[i] * right[i] / matrix[i][i]).sum()
     }
 
     /// Sum of the weighed squares that these coefficients leave.

@@ -36,13 +36,13 @@ impl Reach {
     ) {
         reserve_to(&mut self.queue, field.width * field.height);
         let around = Around { field, planes };
-        for [u, v] in seams.open() {
-            self.ask(&around, [u, v], image, contacts);
+        seams.each_open(|place| {
+            self.ask(&around, place, image, contacts);
             while let Some(at) = self.queue.pop() {
                 let place = [at as usize % field.stride, at as usize / field.stride];
-                around.neighbours(place).for_each(|place| self.ask(&around, place, image, contacts));
+                around.neighbours(place).into_iter().for_each(|place| self.ask(&around, place, image, contacts));
             }
-        }
+        });
     }
 
     /// Gives a pixel without a region the nearest of the planes of its neighbours that it lies on, if any.
@@ -69,22 +69,17 @@ impl Reach {
         if own > 0 {
             image[at] = own;
             self.queue.push(at as u32);
-            around.neighbours(place).for_each(|[x, y]| contacts.touch(own, image[y * field.stride + x]));
+            let labels = around.neighbours(place).map(|[x, y]| image[y * field.stride + x]);
+            labels.into_iter().for_each(|label| contacts.touch(own, label));
         }
     }
 }
 
 impl Around<'_> {
-    /// The four neighbours of a pixel.
+    /// The four neighbours of a pixel; at the map's edge itself in place of those that are missing.
     #[inline(always)]
-    fn neighbours(&self, [u, v]: [usize; 2]) -> impl Iterator<Item = [usize; 2]> + use<> {
-        let (width, height) = (self.field.width, self.field.height);
-        let beside = [
-            (u > 0).then(|| [u - 1, v]),
-            (u + 1 < width).then(|| [u + 1, v]),
-            (v > 0).then(|| [u, v - 1]),
-            (v + 1 < height).then(|| [u, v + 1]),
-        ];
-        beside.into_iter().flatten()
+    fn neighbours(&self, [u, v]: [usize; 2]) -> [[usize; 2]; 4] {
+        let [right, below] = [(u + 1).min(self.field.width - 1), (v + 1).min(self.field.height - 1)];
+        [[u.saturating_sub(1), v], [right, v], [u, v.saturating_sub(1)], [u, below]]
     }
 }

@@ -39,32 +39,41 @@ impl Seams {
         self.words = words;
     }
 
-    /// (u, v) of the pixels without a region that have a neighbour with one, row by row.
-    pub(super) fn open(&self) -> impl Iterator<Item = [usize; 2]> {
-        let (words, all) = (self.words, &self.labelled);
-        (words..all.len() - words).flat_map(move |at| {
-            let (first, last) = (at % words == 0, (at + 1) % words == 0);
-            let from_left = if first { 0 } else { all[at - 1] >> (WORD - 1) };
-            let from_right = if last { 0 } else { all[at + 1] << (WORD - 1) };
-            let beside = all[at] << 1 | from_left | all[at] >> 1 | from_right | all[at - words] | all[at + words];
-            bits(!all[at] & beside).map(move |bit| [at % words * WORD + bit, at / words - 1])
-        })
+    /// Calls `visit` with (u, v) of each pixel without a region that has a neighbour with one, row by row.
+    pub(super) fn each_open(&self, mut visit: impl FnMut([usize; 2])) {
+        let words = self.words;
+        for v in 0..self.like_left.len() / words {
+            let [above, here, below] = [v, v + 1, v + 2].map(|row| &self.labelled[row * words..][..words]);
+            for word in 0..words {
+                let from_right = here.get(word + 1).map_or(0, |next| next << (WORD - 1));
+                let beside = above[word] | below[word] | to_right(here, word) | here[word] >> 1 | from_right;
+                bits(!here[word] & beside).for_each(|bit| visit([word * WORD + bit, v]));
+            }
+        }
     }
 
     /// Calls `visit` with the labels of each two neighbours that have different ones.
     pub(super) fn each(&self, image: &[u16], mut visit: impl FnMut(u16, u16)) {
-        let words = self.words;
-        let labelled = &self.labelled;
-        for (at, (like_left, like_up)) in self.like_left.iter().zip(&self.like_up).enumerate() {
-            let [here, above] = [labelled[at + words], labelled[at]];
-            let from_left = if at % words == 0 { 0 } else { labelled[at + words - 1] >> (WORD - 1) };
-            let mut visit_all = |mask: u64, off: usize| {
-                bits(mask).map(|bit| at * WORD + bit).for_each(|pixel| visit(image[pixel], image[pixel - off]));
-            };
-            visit_all(here & (here << 1 | from_left) & !like_left, 1);
-            visit_all(here & above & !like_up, words * WORD);
+        let (words, stride) = (self.words, self.words * WORD);
+        let rows = self.like_left.chunks_exact(words).zip(self.like_up.chunks_exact(words));
+        for (v, (like_left, like_up)) in rows.enumerate() {
+            let [above, here] = [v, v + 1].map(|row| &self.labelled[row * words..][..words]);
+            for word in 0..words {
+                let mut visit_all = |mask: u64, off: usize| {
+                    let first = v * stride + word * WORD;
+                    bits(mask).map(|bit| first + bit).for_each(|pixel| visit(image[pixel], image[pixel - off]));
+                };
+                visit_all(here[word] & to_right(here, word) & !like_left[word], 1);
+                visit_all(here[word] & above[word] & !like_up[word], stride);
+            }
         }
     }
+}
+
+/// A word of a row's mask, every bit moved one pixel to the right.
+#[inline(always)]
+fn to_right(row: &[u64], word: usize) -> u64 {
+    row[word] << 1 | if word > 0 { row[word - 1] >> (WORD - 1) } else { 0 }
 }
 
 /// The masks of some rows, to be written.

@@ -41,18 +41,18 @@ impl Regions {
         let own = grid.region[at];
         let [u, v] = grid.middle(place);
         let far = FAR * FAR * f64::from(grid.variance[at]);
-        let others = grid
-            .neighbours(place)
-            .map(|beside| grid.region[grid.at(beside)])
-            .filter(|&id| id != NONE && id != own && (self.all[id as usize].at(u, v) - grid.q(at)).powi(2) <= far);
-        let mut others = others.peekable();
-        if others.peek().is_none() {
+        let q = grid.q(at);
+        let is_near = |id: u32| id != NONE && id != own && (self.all[id as usize].at(u, v) - q).powi(2) <= far;
+        let beside = grid.neighbours(place).map(|beside| grid.region[grid.at(beside)]);
+        let mut others = beside.map(|id| if is_near(id) { id } else { NONE });
+        (1..4).for_each(|i| others[i] = if others[..i].contains(&others[i]) { NONE } else { others[i] });
+        if others == [NONE; 4] {
             return;
         }
         let cell = grid.cell(place);
         let about = |id: u32| cell.squares_about(self.all[id as usize].abc, self.all[id as usize].origin);
         let (mut best, mut least) = (own, about(own) - BETTER * cell.variance);
-        for id in others {
+        for id in others.into_iter().filter(|&id| id != NONE) {
             let squares = about(id);
             (best, least) = if squares < least { (id, squares) } else { (best, least) };
         }
