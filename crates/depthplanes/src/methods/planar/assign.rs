@@ -5,7 +5,7 @@
 //! against the planes of the tiles around it; where two planes meet at a crease, both explain the
 //! pixels near it, and the line where they meet, which is known exactly, decides.
 
-use super::field::Field;
+use super::field::{COLUMNS, Field};
 use super::grid::{Grid, NONE};
 use super::planes::Planes;
 use super::rule::{Rule, is_near_both};
@@ -71,18 +71,18 @@ fn assign_row(
     scratch: &mut Scratch,
     image: &mut [u16],
 ) {
-    let own = &blocks.region[row * blocks.columns..][..blocks.columns];
-    let mut column = 0;
-    while column < blocks.columns {
-        let id = own[column];
-        if is_inside(blocks, column, row) {
-            let most = (column + STRETCH).min(blocks.columns);
-            let end = (column + 1..most).find(|&next| own[next] != id || !is_inside(blocks, next, row)).unwrap_or(most);
-            label_inside(stride, planes, id, column..end, row, q, image);
-            column = end;
-        } else {
-            let near = Near::new(tiles, column, row);
-            let at = column * BLOCK;
+    for first in (0..blocks.columns).step_by(STRETCH) {
+        let inside = are_inside(blocks, first, row);
+        let mut within = 0;
+        while within < STRETCH {
+            let (column, id) = (first + within, inside[within]);
+            if id != NONE {
+                let count = inside[within..].iter().take_while(|&&other| other == id).count();
+                label_inside(stride, planes, id, column..column + count, row, q, image);
+                within += count;
+                continue;
+            }
+            let (near, at) = (Near::new(tiles, column, row), column * BLOCK);
             if near.count > 0 {
                 let mut block =
                     Block { middle: [column, row].map(|place| (place * BLOCK) as f64 + HALF), q: [0.0; PIXELS] };
@@ -96,19 +96,36 @@ fn assign_row(
             } else {
                 (0..BLOCK).for_each(|v| image[v * stride + at..][..BLOCK].fill(0));
             }
-            column += 1;
+            within += 1;
         }
     }
 }
 
-/// Whether all tiles of a block and of those around it are of one region.
+/// Blocks of a row that are looked at together, a multiple of which it has; the noise is taken to be the same in all that
+/// are labelled at a time.
+const STRETCH: usize = COLUMNS / BLOCK;
+
+/// For each block from `first` on its region, if all tiles of it and of the blocks around it are of that one.
 #[inline(always)]
-fn is_inside(blocks: &Grid, column: usize, row: usize) -> bool {
-    let id = blocks.region[row * blocks.columns + column];
-    let columns = column.saturating_sub(1)..(column + 2).min(blocks.columns);
-    let mut rows = row.saturating_sub(1)..(row + 2).min(blocks.rows);
-    id != NONE
-        && rows.all(|row| blocks.region[row * blocks.columns..][columns.clone()].iter().all(|&other| other == id))
+fn are_inside(blocks: &Grid, first: usize, row: usize) -> [u32; STRETCH] {
+    let rows = [row.saturating_sub(1), row, (row + 1).min(blocks.rows - 1)];
+    let [above, own, below] = rows.map(|row| {
+        let row = &blocks.region[row * blocks.columns..][..blocks.columns];
+        let mut around = [NONE; STRETCH + 2];
+        around[0] = row[first.saturating_sub(1)];
+        around[1..=STRETCH].copy_from_slice(&row[first..first + STRETCH]);
+        around[STRETCH + 1] = row[(first + STRETCH).min(blocks.columns - 1)];
+        around
+    });
+    let mut same = [NONE; STRETCH + 2];
+    for x in 0..STRETCH + 2 {
+        same[x] = if (above[x] == own[x]) & (below[x] == own[x]) { own[x] } else { NONE };
+    }
+    let mut inside = [NONE; STRETCH];
+    for x in 0..STRETCH {
+        inside[x] = if (same[x] == same[x + 1]) & (same[x + 1] == same[x + 2]) { same[x + 1] } else { NONE };
+    }
+    inside
 }
 
 /// Labels a stretch of blocks that have one region around them.
@@ -137,9 +154,6 @@ fn label_inside(
     }
 }
 
-/// Most blocks that are labelled at a time; the noise is taken to be the same in all of them.
-const STRETCH: usize = 8;
-
 /// 0, 1, ..
 const NUMBERS: [f32; STRETCH * BLOCK] = {
     let mut numbers = [0.0; STRETCH * BLOCK];
@@ -165,7 +179,8 @@ pub(super) fn held_against(grids: [&Grid; 2], [u, v]: [usize; 2]) -> Held {
     let [column, row] = [u / BLOCK, v / BLOCK];
     let near = Near::new(grids[0], column, row);
     let middle = [column, row].map(|place| (place * BLOCK) as f64 + HALF);
-    Held { ids: near.ids().to_vec(), middle, factor: if is_inside(grids[1], column, row) { INSIDE } else { 1.0 } }
+    let is_inside = are_inside(grids[1], column - column % STRETCH, row)[column % STRETCH] != NONE;
+    Held { ids: near.ids().to_vec(), middle, factor: if is_inside { INSIDE } else { 1.0 } }
 }
 
 /// Tiles of a row that are looked at for a block: its own two, two on either side, and two that do not count.

@@ -8,7 +8,7 @@ use crate::map::{DepthView, Pixel, Validity};
 use crate::noise::{Space, Steps};
 
 /// Columns that are summed at a time.
-const COLUMNS: usize = LANES * SIDE;
+pub(super) const COLUMNS: usize = LANES * SIDE;
 /// Rows of the coarsest cells.
 pub(super) const ROWS: usize = SIDE << (LEVELS - 1);
 

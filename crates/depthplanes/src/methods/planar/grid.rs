@@ -177,6 +177,12 @@ impl Grid {
         place.row as usize * self.columns + place.column as usize
     }
 
+    /// Which cell's numbers stand there.
+    #[inline(always)]
+    pub(super) fn place(&self, at: usize) -> Place {
+        Place::new(at % self.columns, at / self.columns)
+    }
+
     /// (u, v) of a cell's middle.
     #[inline(always)]
     pub(super) fn middle(&self, place: Place) -> [f64; 2] {

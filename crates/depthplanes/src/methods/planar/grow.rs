@@ -114,8 +114,8 @@ impl Region {
 #[derive(Debug, Default)]
 pub(super) struct Regions {
     pub(super) all: Vec<Region>,
-    /// Cells that may start a region: scatter and place.
-    seeds: Vec<(f32, Place)>,
+    /// Cells that may start a region: the bits of their scatter, which is not negative, and behind them the cell.
+    seeds: Vec<u64>,
     /// Cells whose neighbours are still to be asked.
     queue: Vec<Place>,
     /// For each region whether a tile went over to it or from it.
@@ -174,15 +174,15 @@ impl Regions {
                 next = column + 1;
                 let at = row * grid.columns + column;
                 if grid.roughness[at] <= 1.0 && grid.pixels(at) >= least {
-                    self.seeds.push((grid.scatter(at), Place { row: row as u32, column: column as u32 }));
+                    self.seeds.push(u64::from(grid.scatter(at).to_bits()) << 32 | at as u64);
                 }
             }
         }
-        self.seeds.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        self.seeds.sort_unstable();
         for i in 0..self.seeds.len() {
-            let (_, seed) = self.seeds[i];
-            let at = grid.at(seed);
+            let at = self.seeds[i] as u32 as usize;
             if grid.region[at] == NONE {
+                let seed = grid.place(at);
                 grid.region[at] = self.all.len() as u32;
                 self.all.push(Region::of(&grid.cell(seed)));
                 self.queue.clear();

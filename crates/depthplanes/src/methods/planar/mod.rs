@@ -243,8 +243,9 @@ impl Runner {
             valid_pixels: field.valid_pixels,
         };
         let planes = params.planes(&regions.all, &noise, false);
+        let threads = job.threads;
         let join = |grouper: &mut Grouper| {
-            pieces.join(field, image, grouper);
+            pieces.join(field, image, grouper, threads);
             strays.join(field, image, &planes, params.min, grouper);
         };
         finisher.finish_united(&map, &ids, &wanted, join, job, out)?;

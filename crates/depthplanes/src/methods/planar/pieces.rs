@@ -7,7 +7,8 @@
 
 use super::field::Field;
 use super::planes::BENT;
-use crate::group::{Grouper, reserve_to, vectorised};
+use crate::group::{Grouper, Groups, reserve_to, vectorised};
+use crate::parallel::in_parts;
 
 /// Pixels of a row that are looked at together.
 const ABREAST: usize = 32;
@@ -17,9 +18,21 @@ pub(super) fn slack(stride: usize) -> usize {
     2 * stride + ABREAST
 }
 
+/// Rows of a part of the map; the parts are the same on any number of threads.
+const ROWS: usize = 64;
+
 /// Joins pieces; reuses its memory.
 #[derive(Debug, Default)]
 pub(super) struct Pieces {
+    parts: Vec<Part>,
+    /// Groups that are one.
+    pairs: Vec<[u32; 2]>,
+}
+
+/// What is found in some rows of the map.
+#[derive(Debug, Default)]
+struct Part {
+    first: usize,
     /// For each pixel of a row, as bits, which of the four that are two steps off, below or to the right, have its label
     /// where none between has.
     apart: Vec<u8>,
@@ -28,15 +41,29 @@ pub(super) struct Pieces {
 }
 
 impl Pieces {
-    /// Joins the groups of a region image, over missing pixels only: what was measured between and lies on no plane parts
-    /// them.
-    pub(super) fn join(&mut self, field: &Field, image: &[u16], grouper: &mut Grouper) {
+    /// Joins the groups of a region image, on as many threads, over missing pixels only: what was measured between and lies
+    /// on no plane parts them. The image is followed by [`slack`] pixels.
+    pub(super) fn join(&mut self, field: &Field, image: &[u16], grouper: &mut Grouper, threads: usize) {
+        let Pieces { parts, pairs } = self;
+        parts.resize_with(field.height.div_ceil(ROWS), Part::default);
+        parts.iter_mut().zip((0..).step_by(ROWS)).for_each(|(part, first)| part.first = first);
+        let groups = grouper.groups();
+        let list = |parts: &mut [Part]| parts.iter_mut().for_each(|part| part.list(field, image, groups));
+        in_parts(threads, &mut parts[..], list, |(), ()| ());
+        reserve_to(pairs, image.len());
+        parts.iter().for_each(|part| pairs.extend(&part.pairs));
+        grouper.unite(pairs);
+    }
+}
+
+impl Part {
+    fn list(&mut self, field: &Field, image: &[u16], groups: &Groups) {
         let Field { width, height, stride, ref q, .. } = *field;
         let is_missing = |[u, v]: [usize; 2]| q[v * stride + u].is_nan();
-        let Pieces { apart, pairs } = self;
-        reserve_to(pairs, image.len());
+        let Part { first, apart, pairs } = self;
+        reserve_to(pairs, ROWS * stride);
         apart.resize(stride, 0);
-        for v in 0..height {
+        for v in *first..(*first + ROWS).min(height) {
             vectorised(
                 #[inline(always)]
                 || find_apart(image, v * stride, apart),
@@ -59,13 +86,12 @@ impl Pieces {
                     for (way, ([x, y], between)) in to.into_iter().enumerate() {
                         let is_there = ways >> way & 1 > 0 && x < width && y < height;
                         if is_there && between.into_iter().any(is_missing) {
-                            list(grouper.groups().at([u, v]), grouper.groups().at([x, y]), pairs);
+                            list(groups.at([u, v]), groups.at([x, y]), pairs);
                         }
                     }
                 }
             }
         }
-        grouper.unite(pairs);
     }
 }
 
