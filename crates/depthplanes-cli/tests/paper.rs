@@ -3,7 +3,6 @@
 mod support;
 
 use serde_json::Value;
-use std::time::{Duration, Instant};
 use support::Bench;
 
 /// The number of planes of a row.
@@ -58,26 +57,9 @@ fn made_up_maps_stand_in_for_the_papers_and_the_report_says_so() {
 #[test]
 fn a_killed_run_of_the_protocol_goes_on_and_redoes_no_row() {
     let (bench, words) = without_maps("paper_killed", "ngaf");
-    let mut child = bench.command().args(&words).stdout(std::process::Stdio::null()).spawn().unwrap();
-    let start = Instant::now();
-    let kept = || std::fs::read_to_string(bench.folder.join("report/rows.jsonl")).unwrap_or_default();
-    while kept().lines().count() < 3 && start.elapsed() < Duration::from_secs(60) {
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    child.kill().unwrap(); // SIGKILL: nothing is tidied up
-    child.wait().unwrap();
-    let kept = kept();
-    let whole = &kept[..kept.rfind('\n').map_or(0, |end| end + 1)];
-    bench.run(&words).ok();
-    assert!(String::from_utf8(bench.read("report/rows.jsonl")).unwrap().starts_with(whole), "a row was made again");
     // Eleven maps of the paper and ten with a truth, by four values of min.
+    bench.kill_and_go_on(&words, 84);
     assert_eq!(rows(&bench).len(), 84);
-    let pages =
-        || ["report.html", "report.md", "rows.csv", "rows.json"].map(|name| bench.read(&format!("report/{name}")));
-    let before = pages();
-    let again = bench.run(&words);
-    assert!(again.err.contains("84 of 84 results are there already"), "{again:?}");
-    assert!(pages() == before, "the report of the same rows is another");
 }
 
 #[test]

@@ -43,6 +43,18 @@ impl Intrinsics {
         Ok(Intrinsics { fx, fy, cx, cy })
     }
 
+    /// The camera that stands in for one that is not known: on a map of `width` x `height` pixels it sees 53.13 degrees
+    /// along the longer side, half of it on either side of the middle, and its pixels are square.
+    ///
+    /// The focal length is the longer side, in pixels: our choice, a round figure somewhat narrower than Kinects (57 to 70
+    /// degrees). Planes remain planes with any camera, though angles and distances are not the true ones. Both sides have
+    /// to be 1 or more, as those of a map are.
+    pub fn assumed(width: usize, height: usize) -> Self {
+        let [width, height] = [width, height].map(|side| side as f64);
+        let focal = width.max(height);
+        Intrinsics { fx: focal, fy: focal, cx: width / 2.0, cy: height / 2.0 }
+    }
+
     /// The ray through pixel (u, v), scaled so that its z is 1.
     #[inline]
     pub fn ray(&self, u: f64, v: f64) -> [f64; 3] {
@@ -228,4 +240,26 @@ impl Hessian {
 /// `m` with `1/z = m . r` for the ray r of [`Intrinsics::ray`].
 pub(crate) fn ray_coefficients([a, b, c]: [f64; 3], camera: &Intrinsics) -> [f64; 3] {
     [a * camera.fx, b * camera.fy, c + a * camera.cx + b * camera.cy]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_assumed_camera_sees_53_degrees_along_the_longer_side() {
+        let cosine = |[a, b]: [[f64; 3]; 2]| {
+            let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            dot(a, b) / (dot(a, a) * dot(b, b)).sqrt()
+        };
+        let (wide, tall) = (Intrinsics::assumed(640, 480), Intrinsics::assumed(480, 640));
+        let across = [wide.ray(0.0, 240.0), wide.ray(640.0, 240.0)];
+        let down = [tall.ray(240.0, 0.0), tall.ray(240.0, 640.0)];
+        // In the triangle of 3, 4 and 5 the angle of 53.13 degrees lies between the sides of 3 and 5.
+        for ends in [across, down] {
+            assert!((cosine(ends) - 3.0 / 5.0).abs() < 1e-12, "{ends:?}");
+        }
+        // Pixels are square.
+        assert_eq!((wide.fx, tall.fx), (wide.fy, tall.fy));
+    }
 }

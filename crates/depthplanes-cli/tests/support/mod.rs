@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
 
 /// An empty folder that belongs to one test.
 pub struct Bench {
@@ -41,6 +42,30 @@ impl Bench {
     pub fn run(&self, words: &[&str]) -> Ran {
         let output = self.command().args(words).stdin(Stdio::null()).output().unwrap();
         Ran::from(output)
+    }
+
+    /// Runs the program with these words, kills it once `report/rows.jsonl` has three rows, and lets it go on to the end:
+    /// no row is made again, and of the same rows, `count`, a further run makes the same report.
+    pub fn kill_and_go_on(&self, words: &[&str], count: usize) {
+        let mut child = self.command().args(words).stdout(Stdio::null()).spawn().unwrap();
+        let start = Instant::now();
+        let kept = || std::fs::read_to_string(self.folder.join("report/rows.jsonl")).unwrap_or_default();
+        while kept().matches('\n').count() < 3 && start.elapsed() < Duration::from_secs(60) {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        child.kill().unwrap(); // SIGKILL: nothing is tidied up
+        child.wait().unwrap();
+        let before = kept();
+        let whole = &before[..before.rfind('\n').map_or(0, |end| end + 1)];
+        assert!(whole.lines().count() >= 3, "{before}");
+        self.run(words).ok();
+        assert!(kept().starts_with(whole), "a row was made again");
+        let pages =
+            || ["report.html", "report.md", "rows.csv", "rows.json"].map(|name| self.read(&format!("report/{name}")));
+        let made = pages();
+        let again = self.run(words);
+        assert!(again.err.contains(&format!("{count} of {count} results are there already")), "{again:?}");
+        assert!(pages() == made, "the report of the same rows is another");
     }
 
     pub fn command(&self) -> Command {

@@ -8,9 +8,9 @@
 use super::affine::Affine;
 use super::cloud::Cloud;
 use super::finish::{MIN, STAGES};
-use super::pieces::{EPSILON, Pieces, SEED, Tolerance};
+use super::pieces::{EPSILON, Pieces, Tolerance};
 use super::rays::{Plane3, Vec3, dot, sub, unit};
-use super::regions::{Input, Runner, Segment, Segmented};
+use super::regions::{Input, Runner, SEED, Segment, Segmented};
 use super::{Job, MethodInfo, Param, ParamKind};
 use crate::random::Random;
 use crate::select::MAX_PLANES;

@@ -14,7 +14,7 @@ use crate::fit::Moments;
 /// How often a plane is fitted to its piece; the piece is then sought anew.
 const FITS: usize = 3;
 
-/// Both methods have these parameters.
+/// The parameter that both methods have.
 pub(super) const EPSILON: Param = Param {
     name: "epsilon",
     default: 0.0,
@@ -24,17 +24,6 @@ pub(super) const EPSILON: Param = Param {
     unit: "m or median depths",
     meaning: "How far a point may lie from its plane, in median depths where unit or camera is unknown; 0 for 1 % of the diagonal of the box around all points.",
     source: Some("Schnabel et al. 2007"),
-};
-
-pub(super) const SEED: Param = Param {
-    name: "seed",
-    default: 1.0,
-    min: 0.0,
-    max: u32::MAX as f64,
-    kind: ParamKind::Whole,
-    unit: "number",
-    meaning: "Which random draws to make; the same number gives the same answer.",
-    source: None,
 };
 
 /// Which points are on a plane.

@@ -8,7 +8,7 @@
 use super::a_contrario::{Abc, Background, DELTA, EPS, Region, paint};
 use super::affine::Affine;
 use super::finish::{MIN, STAGES};
-use super::regions::{Input, Runner, Segment, Segmented};
+use super::regions::{Input, Runner, SEED, Segment, Segmented};
 use super::{Job, MethodInfo, Param, ParamKind};
 use crate::random::Random;
 use crate::select::MAX_PLANES;
@@ -65,16 +65,7 @@ const PARAMS: &[Param] = &[
         meaning: "How often three points are drawn around a seed; the plane with the most aligned pixels in the disc counts.",
         source: None,
     },
-    Param {
-        name: "seed",
-        default: 1.0,
-        min: 0.0,
-        max: u32::MAX as f64,
-        kind: ParamKind::Whole,
-        unit: "-",
-        meaning: "Start of the random draws; the same seed gives the same planes.",
-        source: None,
-    },
+    SEED,
 ];
 
 struct Ppdfdm {

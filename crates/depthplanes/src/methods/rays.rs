@@ -1,8 +1,7 @@
 //! Points, planes and the rays of pixels in space.
 //!
-//! In: what is known of the sensor, and q at places of the image. Out: points and planes. Where the camera is not known, one
-//! is assumed that sees 53 degrees along the longer side: planes remain planes, though angles and distances are not the
-//! true ones.
+//! In: what is known of the sensor, and q at places of the image. Out: points and planes. Where the camera is not known, it
+//! is [`Intrinsics::assumed`].
 
 use super::affine::{Affine, Around};
 use crate::camera::{Intrinsics, Measure, Sensor};
@@ -61,13 +60,12 @@ pub(super) struct Rays {
 impl Rays {
     /// Of a sensor. Of disparity, inverse depth is known up to a factor only, which angles do not depend on.
     pub(super) fn of(sensor: &Sensor, width: usize, height: usize) -> Self {
-        let [w, h] = [width, height].map(|side| side as f64);
-        let usual = Intrinsics { fx: w.max(h), fy: w.max(h), cx: w / 2.0, cy: h / 2.0 };
         let (slope, offset) = match sensor.measure {
             Measure::InverseDepth { slope, offset } => (slope, offset),
             Measure::Depth { .. } | Measure::Disparity => (1.0, 0.0), // q of depth is in 1/m
         };
-        Rays { camera: sensor.intrinsics.unwrap_or(usual), slope, offset }
+        let camera = sensor.intrinsics.unwrap_or_else(|| Intrinsics::assumed(width, height));
+        Rays { camera, slope, offset }
     }
 
     /// The same, lengths being metres where unit and camera are known and median depths of the map where they are not.

@@ -4,13 +4,25 @@
 
 use super::affine::Affine;
 use super::finish::{Finisher, Wanted};
-use super::{Job, Method, MethodInfo};
+use super::{Job, Method, MethodInfo, Param, ParamKind};
 use crate::camera::Sensor;
 use crate::detection::Detection;
 use crate::error::Result;
 use crate::map::{AnyView, DepthView};
 use crate::noise::{NoiseModel, Space};
 use crate::with_view;
+
+/// The parameter of methods that draw lots.
+pub(super) const SEED: Param = Param {
+    name: "seed",
+    default: 1.0,
+    min: 0.0,
+    max: u32::MAX as f64,
+    kind: ParamKind::Whole,
+    unit: "number",
+    meaning: "Which random draws to make; the same number gives the same answer.",
+    source: None,
+};
 
 /// Finds the regions of a map.
 pub(super) trait Segment: Send + 'static {

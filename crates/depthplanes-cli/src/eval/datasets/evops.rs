@@ -1,8 +1,7 @@
 //! Folders in the layout of EVOPS: depth beside labels, as of ICL-NUIM and TUM.
 
-use super::{Dataset, Item, files, name_of, needed, options, reading, truth};
+use super::{Dataset, Item, beside_labels};
 use crate::failure::Outcome;
-use depthplanes::Intrinsics;
 use std::path::Path;
 
 pub(super) const DATASET: Dataset = Dataset {
@@ -17,15 +16,5 @@ pub(super) const DATASET: Dataset = Dataset {
 const CAMERA: [f64; 4] = [481.2, -480.0, 319.5, 239.5];
 
 fn items(folder: &Path) -> Outcome<Vec<Item>> {
-    let [fx, fy, cx, cy] = CAMERA;
-    let camera = Intrinsics::new(fx, fy, cx, cy)?;
-    let item = |depth: std::path::PathBuf| {
-        let name = name_of(&depth).replace(".depth.png", "");
-        let labels = needed(depth.with_file_name(format!("{name}.labels.png")), &depth)?;
-        let mut options = options(Some("tum"), None);
-        options.intrinsics = Some(camera);
-        let frame = reading(depth, options);
-        Ok(Item { dataset: DATASET.name.into(), name, frame, truth: Some(truth(labels, 1)) })
-    };
-    files(folder, |name| name.ends_with(".depth.png"))?.into_iter().map(item).collect()
+    beside_labels(DATASET.name, folder, [".depth.png", ".labels.png"], CAMERA)
 }

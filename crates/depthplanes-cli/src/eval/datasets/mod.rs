@@ -14,6 +14,7 @@ mod synpeb;
 
 use crate::failure::{Failure, Outcome};
 use crate::natural;
+use depthplanes::Intrinsics;
 use depthplanes::noise::SensorNoise;
 use depthplanes_io::formats::DecodeOptions;
 use depthplanes_io::{Frame, LabelImage, ReadOptions, read_labels};
@@ -110,6 +111,23 @@ fn files(folder: &Path, is_wanted: impl Fn(&str) -> bool) -> Outcome<Vec<PathBuf
     }
     found.sort_by(|a, b| natural::compare(&a.to_string_lossy(), &b.to_string_lossy()));
     Ok(found)
+}
+
+/// Maps in 1/5000 m beside their label images, by the endings of the two names, and all of one camera: fx, fy, cx, cy.
+fn beside_labels(
+    dataset: &str,
+    folder: &Path,
+    [depth_ends, labels_end]: [&str; 2],
+    [fx, fy, cx, cy]: [f64; 4],
+) -> Outcome<Vec<Item>> {
+    let camera = Intrinsics::new(fx, fy, cx, cy)?;
+    let item = |depth: PathBuf| {
+        let name = name_of(&depth).replace(depth_ends, "");
+        let labels = needed(depth.with_file_name(format!("{name}{labels_end}")), &depth)?;
+        let options = ReadOptions { intrinsics: Some(camera), ..options(Some("tum"), None) };
+        Ok(Item { dataset: dataset.into(), name, frame: reading(depth, options), truth: Some(truth(labels, 1)) })
+    };
+    files(folder, |name| name.ends_with(depth_ends))?.into_iter().map(item).collect()
 }
 
 /// A path's last part.

@@ -1,8 +1,7 @@
 //! SynPEB's made-up scans, as pinhole depth.
 
-use super::{Dataset, Item, files, name_of, needed, options, reading, truth};
+use super::{Dataset, Item, beside_labels};
 use crate::failure::Outcome;
-use depthplanes::Intrinsics;
 use std::path::Path;
 
 pub(super) const DATASET: Dataset = Dataset {
@@ -17,15 +16,5 @@ pub(super) const DATASET: Dataset = Dataset {
 const CAMERA: [f64; 4] = [400.0, 400.0, 279.5, 229.5];
 
 fn items(folder: &Path) -> Outcome<Vec<Item>> {
-    let [fx, fy, cx, cy] = CAMERA;
-    let camera = Intrinsics::new(fx, fy, cx, cy)?;
-    let item = |depth: std::path::PathBuf| {
-        let name = name_of(&depth).replace(".pinhole_depth.png", "");
-        let labels = needed(depth.with_file_name(format!("{name}.pinhole_labels.png")), &depth)?;
-        let mut options = options(Some("tum"), None);
-        options.intrinsics = Some(camera);
-        let frame = reading(depth, options);
-        Ok(Item { dataset: DATASET.name.into(), name, frame, truth: Some(truth(labels, 1)) })
-    };
-    files(folder, |name| name.ends_with(".pinhole_depth.png"))?.into_iter().map(item).collect()
+    beside_labels(DATASET.name, folder, [".pinhole_depth.png", ".pinhole_labels.png"], CAMERA)
 }

@@ -1,7 +1,7 @@
 //! A frame as files for a peer, and its label image back.
 //!
 //! In: a frame. Out: `values.npy`, the map's own numbers, and `depth.npy`, metres; 0 = missing in both. Where unit or camera
-//! is unknown, depth is in median depths and the camera is one that sees 53 degrees along the longer side, as for `ransac`.
+//! is unknown, depth is in median depths and the camera is [`Intrinsics::assumed`], as for `ransac`.
 
 use crate::failure::{Failure, Outcome};
 use depthplanes::describe::{Describer, Seen};
@@ -34,9 +34,8 @@ pub(super) fn put(frame: &Frame, folder: &Path) -> Outcome<(Camera, bool)> {
     let depth = inverse.iter().map(|&inverse| if inverse > 0.0 { (median / inverse) as f32 } else { 0.0 }).collect();
     write_file(&folder.join("values.npy"), &map_npy(width, height, &valid_values(frame)?))?;
     write_file(&folder.join("depth.npy"), &map_npy(width, height, &Pixels::F32(depth)))?;
-    let [w, h] = [width, height].map(|side| side as f64);
-    let usual = Intrinsics { fx: w.max(h), fy: w.max(h), cx: w / 2.0, cy: h / 2.0 };
-    let Intrinsics { fx, fy, cx, cy } = frame.sensor.intrinsics.unwrap_or(usual);
+    let assumed = || Intrinsics::assumed(width, height);
+    let Intrinsics { fx, fy, cx, cy } = frame.sensor.intrinsics.unwrap_or_else(assumed);
     Ok((Camera { fx, fy, cx, cy }, is_metric))
 }
 

@@ -13,8 +13,7 @@ mod merge;
 
 use super::finish::{MIN, STAGES};
 use super::noise::{NOISE, NOISE_GROWTH, of_kind, stated};
-use super::pieces::SEED;
-use super::regions::{Input, Runner, Segment, Segmented};
+use super::regions::{Input, Runner, SEED, Segment, Segmented};
 use super::{Job, MethodInfo, Param, ParamKind};
 use crate::noise::{Estimator, NoiseModel, Space, Steps};
 use crate::random::Random;

@@ -7,12 +7,14 @@ use super::assign::{self, Held};
 use super::curved::Sign;
 use super::grid::{Grid, NONE};
 use super::grow::{Region, fewest};
-use super::planes::BENT;
+use super::pieces::Pieces;
+use super::planes::{self, BENT};
 use super::{INFO, Moment, Planar, Runner};
 use crate::camera::{Hessian, Measure, Sensor};
 use crate::detection::Detection;
 use crate::error::Result;
 use crate::explanation::{Explanation, Finding, Limit, Verdict};
+use crate::group::{Grouper, LinkRule};
 use crate::map::AnyView;
 use crate::methods::noise::stated;
 use crate::methods::tries::{Change, Tries, rounded_down, rounded_up, smaller_min};
@@ -80,6 +82,16 @@ struct Against {
     pixels: f64,
 }
 
+/// A piece that was cut off from its region and went to the one around it.
+#[derive(Clone, Copy, Debug)]
+struct Stray {
+    pixels: usize,
+    /// The region that it went to.
+    id: u32,
+    /// The pixel's distance from that one's plane, standard deviations.
+    off: f64,
+}
+
 /// What was seen of one pixel.
 struct Seen {
     at: [usize; 2],
@@ -100,6 +112,8 @@ struct Seen {
     /// Pixels of the connected piece it is in.
     piece: usize,
     is_large: bool,
+    /// The piece itself, if it was cut off.
+    stray: Option<Stray>,
     noise: Option<NoiseModel>,
 }
 
@@ -118,6 +132,7 @@ impl Seen {
             assigned: 0,
             piece: 0,
             is_large: false,
+            stray: None,
             noise: None,
         }
     }
@@ -321,14 +336,15 @@ impl Seen {
         if self.against.is_empty() {
             self.findings.push(Finding::new("assign", "the pixel", "no region within a block of 8 x 8").refusing(true));
         }
+        self.stray = self.find_stray(run);
         for against in &self.against {
             let label = label_of(run, out, against.id);
-            let name = match (against.is_curved, label) {
-                (true, _) => format!("a curved facet of {} pixels", against.pixels),
-                (false, 0) => format!("a region of {} pixels", against.pixels),
-                (false, label) => format!("plane {label}"),
+            let name = match against.is_curved {
+                true => format!("a curved facet of {} pixels", against.pixels),
+                false => named(label, against.pixels),
             };
             let outcome = match against.off <= self.most {
+                true if u32::from(self.assigned) == against.id + 1 && self.stray.is_some() => "taken at first",
                 true if u32::from(self.assigned) == against.id + 1 => "taken",
                 true if against.is_curved => "near, but gives no plane",
                 true => "near, but another goes before it",
@@ -337,21 +353,58 @@ impl Seen {
             let finding = Finding::new("assign", format!("the pixel against {name}"), outcome);
             self.findings.push(finding.with("off", against.off, DEVIATIONS).limit(Limit::AtMost(self.most)));
         }
-        if self.assigned == 0 {
+        if self.assigned > 0 {
+            self.conclude_piece(run, out);
+        }
+    }
+
+    /// What became of its connected piece.
+    fn conclude_piece(&mut self, run: &Runner, out: &Detection) {
+        let groups = run.finisher.grouper.groups();
+        self.piece = groups.sizes()[groups.at(self.at) as usize] as usize;
+        self.is_large = self.piece > run.params.min as usize;
+        if let Some(stray) = self.stray {
+            let to = named(out.labels[self.at[1] * out.width + self.at[0]], run.regions.all[stray.id as usize].sums.n);
+            let outcome = format!("cut off from the rest of its own plane, goes to {to} around it");
+            let finding = Finding::new("group", "its connected piece", outcome);
+            self.findings.push(finding.with("pixels", stray.pixels as f64, ""));
+            let finding = Finding::new("group", format!("the pixel against {to}"), "taken with its piece");
+            self.findings.push(finding.with("off", stray.off, DEVIATIONS));
             return;
         }
-        let groups = run.finisher.grouper.groups();
-        let [u, v] = self.at.map(|place| place as u32);
-        groups.each_run(|run| {
-            if run.v == v && (run.u_first..=run.u_last).contains(&u) {
-                self.piece = groups.sizes()[run.group as usize] as usize;
+        let outcome = if self.is_large { "large enough" } else { "too small" };
+        let limit = Limit::MoreThan(run.params.min.into());
+        let finding = Finding::new("group", "its connected piece", outcome).with("pixels", self.piece as f64, "");
+        self.findings.push(finding.limit(limit).refusing(!self.is_large));
+    }
+
+    /// Its piece, if stage "group" puts it with a larger piece of another region.
+    fn find_stray(&self, run: &Runner) -> Option<Stray> {
+        let Runner { params, field, image, regions, finisher, .. } = run;
+        if self.assigned == 0 {
+            return None;
+        }
+        // The pieces as they are before that.
+        let (ids, mut grouper) = (planes::of_image(image, field).ok()?, Grouper::default());
+        grouper.group(&ids, &LinkRule::new(ids.validity(), 0.0).ok()?, 1);
+        Pieces::default().join(field, image, &mut grouper);
+        let (pieces, groups) = (grouper.groups(), finisher.grouper.groups());
+        let label_at = |[u, v]: [usize; 2]| image[v * field.stride + u];
+        let mut label = label_at(self.at);
+        pieces.each_run(|run| {
+            let place = [run.u_first as usize, run.v as usize];
+            if pieces.sizes()[run.group as usize] > params.min && groups.at(place) == groups.at(self.at) {
+                label = label_at(place);
             }
         });
-        let is_kept = self.piece > run.params.min as usize;
-        self.is_large = is_kept;
-        let finding = Finding::new("group", "its connected piece", if is_kept { "large enough" } else { "too small" });
-        let limit = Limit::MoreThan(run.params.min.into());
-        self.findings.push(finding.with("pixels", self.piece as f64, "").limit(limit).refusing(!is_kept));
+        if label == label_at(self.at) {
+            return None;
+        }
+        let (id, [u, v]) = (u32::from(label) - 1, self.at.map(|place| place as f64));
+        let planes = params.planes(&regions.all, self.noise.as_ref()?, false);
+        let on_plane = planes.region(id).at(u, v);
+        let off = (self.q - on_plane).abs() / planes.variance(planes.region(id), on_plane).sqrt();
+        Some(Stray { pixels: pieces.sizes()[pieces.at(self.at) as usize] as usize, id, off })
     }
 
     fn verdict(&self, run: &Runner, out: &Detection) -> Verdict {
@@ -362,8 +415,8 @@ impl Seen {
         let is_on_curved = self.against.first().is_some_and(|against| against.is_curved && against.off <= self.most);
         if label > 0 {
             let chosen = self.against.iter().find(|against| against.id + 1 == u32::from(self.assigned));
-            let pixels = out.planes[usize::from(label) - 1].pixel_count;
-            return Verdict::Plane { label, pixels, off: chosen.map(|against| against.off) };
+            let off = self.stray.map(|stray| stray.off).or(chosen.map(|against| against.off));
+            return Verdict::Plane { label, pixels: out.planes[usize::from(label) - 1].pixel_count, off };
         }
         if self.q.is_nan() {
             return Verdict::NotMeasured;
@@ -446,6 +499,11 @@ impl Seen {
         };
         factors.map(scaled).collect()
     }
+}
+
+/// A region in words, by the label of its plane, 0 for none.
+fn named(label: u16, pixels: f64) -> String {
+    if label > 0 { format!("plane {label}") } else { format!("a region of {pixels} pixels") }
 }
 
 /// The label that most of a region's pixels have, 0 for none.

@@ -23,7 +23,7 @@ pub(super) struct Rule {
 
 impl Rule {
     /// A plane goes before a facet of a curved surface; the line where two planes meet, if it parts them, goes
-    /// before the distances.
+    /// before the distances. Either holds unless the block's pixels belie it ([`BELIED`]).
     #[inline(always)]
     pub(super) fn between(first: &Region, second: &Region, plane: &Local, other: &Local) -> Rule {
         if first.is_curved != second.is_curved {
