@@ -387,7 +387,7 @@ impl Seen {
         // The pieces as they are before that.
         let (ids, mut grouper) = (planes::of_image(image, field).ok()?, Grouper::default());
         grouper.group(&ids, &LinkRule::new(ids.validity(), 0.0).ok()?, 1);
-        Pieces::default().join(field, image, &mut grouper);
+        Pieces::default().join(field, image, &mut grouper, 1);
         let (pieces, groups) = (grouper.groups(), finisher.grouper.groups());
         let label_at = |[u, v]: [usize; 2]| image[v * field.stride + u];
         let mut label = label_at(self.at);
