@@ -343,3 +343,54 @@ fn overlap(a: &Pixels<f32>, b: &Pixels<f32>) -> bool {
     let both = a.iter().zip(b).fold(0u32, |any, (a, b)| any | u32::from(is_near_both(*a, *b)));
     both > 0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    /// Tiles in random rectangles of few regions and none, and the blocks with what their tiles agree on.
+    fn grids(random: &mut Random) -> [Grid; 2] {
+        let [mut tiles, mut blocks] = [Grid::new(SIDE), Grid::new(BLOCK)];
+        (tiles.columns, tiles.rows, blocks.columns, blocks.rows) = (32, 12, 16, 6);
+        tiles.region.resize(32 * 12, 0);
+        let mut below = |most: usize| (random.uniform() * most as f64) as usize;
+        for _ in 0..below(6) {
+            let (id, first) = ([NONE, 1, 2, 3, 40][below(5)], [below(32), below(12)]);
+            let size = [1 + below(20), 1 + below(8)];
+            for row in first[1]..(first[1] + size[1]).min(12) {
+                tiles.region[row * 32..][first[0]..(first[0] + size[0]).min(32)].fill(id);
+            }
+        }
+        let agreed = |at: usize| {
+            let first = at / 16 * 64 + at % 16 * 2;
+            let ids = [0, 1, 32, 33].map(|step| tiles.region[first + step]);
+            if ids == [ids[0]; 4] { ids[0] } else { NONE }
+        };
+        blocks.region = (0..16 * 6).map(agreed).collect();
+        [tiles, blocks]
+    }
+
+    #[test]
+    fn what_lies_around_a_block_is_what_a_search_of_the_tiles_finds() {
+        let mut random = Random::new(3);
+        for _ in 0..300 {
+            let grids @ [tiles, blocks] = &grids(&mut random);
+            for (row, column) in (0..blocks.rows).flat_map(|row| (0..blocks.columns).map(move |column| (row, column))) {
+                let mut around = Vec::new();
+                for y in (2 * row).saturating_sub(2)..(2 * row + 4).min(tiles.rows) {
+                    let columns = (2 * column).saturating_sub(2)..(2 * column + 4).min(tiles.columns);
+                    around.extend_from_slice(&tiles.region[y * tiles.columns..][columns]);
+                }
+                around.sort_unstable();
+                around.dedup();
+                let expected: Vec<u32> = around.iter().copied().filter(|&id| id != NONE).collect();
+                assert_eq!(Near::new(tiles, column, row).ids(), expected);
+                let inside = are_inside(blocks, column - column % STRETCH, row)[column % STRETCH];
+                assert_eq!(inside, if around.len() == 1 { around[0] } else { NONE });
+                let held = held_against([&grids[0], &grids[1]], [column * BLOCK + 3, row * BLOCK + 5]);
+                assert_eq!((held.ids, held.factor), (expected, if inside == NONE { 1.0 } else { INSIDE }));
+            }
+        }
+    }
+}

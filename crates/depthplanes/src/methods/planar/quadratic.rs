@@ -175,3 +175,31 @@ impl Sums {
         self.add_row(y, powers, right);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    #[test]
+    fn a_bow_is_what_a_quadratic_leaves_less_than_a_plane() {
+        let mut random = Random::new(11);
+        for round in 0..200 {
+            // Now and then too few rows, so that some terms are not determined.
+            let (columns, rows) = (2 + round % 9, 1 + round % 7);
+            let mut sums = Sums::default();
+            for row in 0..rows {
+                let (mut powers, mut right) = ([0.0; 5], [0.0; 3]);
+                for column in 0..columns {
+                    let [x, r] = [column as f64 - 3.0, random.uniform() - 0.5];
+                    (0..5).for_each(|i| powers[i] += x.powi(i as i32));
+                    (0..3).for_each(|i| right[i] += r * x.powi(i as i32));
+                    sums.squares += r * r;
+                }
+                sums.add_row(row as f64 - 2.0, powers, right);
+            }
+            let by_coefficients = sums.left_by(&sums.solve::<3>()) - sums.left_by(&sums.solve::<6>());
+            assert!((sums.bow() - by_coefficients).abs() < 1e-9, "{} by {by_coefficients}", sums.bow());
+        }
+    }
+}
