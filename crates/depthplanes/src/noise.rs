@@ -6,11 +6,13 @@
 //! flight by a constant in depth; both parts add. [`Estimator`] finds it out from frames.
 
 mod estimate;
+mod ray;
 mod steps;
 mod table;
 
 pub(crate) use estimate::{Blocks, VALID};
 pub use estimate::{Estimate, Estimator};
+pub(crate) use ray::{Slants, Tiled};
 pub(crate) use steps::Steps;
 pub use table::{MAX_ROWS, NoiseTable};
 
@@ -101,6 +103,8 @@ pub struct NoiseModel {
     step: f64,
     /// Whether the noise holds what rounding does on average.
     is_scatter: bool,
+    /// How well the ray of a pixel is known, pixels; 0 where nobody asks.
+    ray: f64,
 }
 
 /// What rounding to steps may do, in steps, to all pixels of a small patch at once: on a slow ramp they lie on one
@@ -119,12 +123,23 @@ impl NoiseModel {
             (Measure::Disparity, SensorNoise::Value { .. }) => (f64::NAN, f64::NAN),
             (Measure::Disparity, _) => return None,
         };
-        Some(NoiseModel { noise, space: Space::of(measure), slope, offset, step, is_scatter: false })
+        Some(NoiseModel { noise, space: Space::of(measure), slope, offset, step, is_scatter: false, ray: 0.0 })
     }
 
     /// The same, its noise being the scatter that a map shows, with what rounding does on average.
     pub(crate) fn of_scatter(self) -> Self {
         NoiseModel { is_scatter: true, ..self }
+    }
+
+    /// The same for rays that are known to within `ray` pixels, one standard deviation.
+    pub(crate) fn with_ray(self, ray: f64) -> Self {
+        NoiseModel { ray, ..self }
+    }
+
+    /// How well the ray of a pixel is known, pixels, one standard deviation; it is no part of [`NoiseModel::variance`],
+    /// which knows no slope.
+    pub(crate) fn ray(&self) -> f64 {
+        self.ray
     }
 
     /// Variance of one pixel's q, rounding taken at its worst.

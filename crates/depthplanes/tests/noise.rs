@@ -1,7 +1,7 @@
 //! Noise models against their formulas, and estimates against the noise of made-up scenes.
 
 use depthplanes::noise::{Estimate, Estimator, MAX_ROWS, NoiseModel, NoiseTable, Patch, SensorNoise};
-use depthplanes::scene::Spec;
+use depthplanes::scene::{Random, Spec};
 use depthplanes::{DepthView, Error, Measure};
 
 const METRES: Measure = Measure::Depth { metres: 1.0 };
@@ -167,4 +167,93 @@ fn rounding_counts_by_how_many_pixels_share_it() {
     assert_eq!(model(0.0).variance_in(&patch([3.0, -2.0]), 9.0), twelfth);
     let dithered = model(0.5).variance_in(&patch([0.1, 0.1]), 9.0);
     assert!((dithered / (0.25 + twelfth) - 1.0).abs() < 0.01, "{dithered}");
+}
+
+/// Columns and rows of the maps that rays are estimated from.
+const RAY_MAP: [usize; 2] = [360, 240];
+
+/// The ray that a map of inverse depth along rays off by `ray` pixels shows, its depth having a noise.
+fn ray_of(inverse_depth: impl Fn(f64, f64) -> f64, ray: f64, sigma_m: impl Fn(f64) -> f64, seed: u64) -> Option<f64> {
+    let ([width, height], mut random) = (RAY_MAP, Random::new(seed));
+    let mut depth = |at: usize| {
+        let [u, v] = [at % width, at / width].map(|place| place as f64 + ray * random.gaussian());
+        let z = inverse_depth(u, v).recip();
+        (z + sigma_m(z) * random.gaussian()) as f32
+    };
+    let pixels: Vec<f32> = (0..width * height).map(&mut depth).collect();
+    let mut estimator = Estimator::default();
+    estimator.add(DepthView::new(&pixels, width, height).unwrap(), METRES).unwrap();
+    estimator.estimate().unwrap().ray
+}
+
+/// A wall, a floor that comes near, and a side that recedes steeply: the near surfaces are the slanted ones.
+fn room(u: f64, v: f64) -> f64 {
+    (0.25 + 0.0002 * u).max(0.25 + 0.004 * (v - 140.0)).max(0.25 + 0.006 * (80.0 - u))
+}
+
+#[test]
+fn the_ray_of_slanted_planes_is_found_beside_the_noise() {
+    for ray in [0.15, 0.3, 0.45] {
+        for seed in 1..=5 {
+            let none = ray_of(room, ray, |_| 0.0, seed).unwrap_or(0.0);
+            let noisy = ray_of(room, ray, |z| 0.0004 * z * z, seed).unwrap_or(0.0);
+            println!("{ray} px: {none:.3} without noise, {noisy:.3} with it");
+            for found in [none, noisy] {
+                assert!((found / ray - 1.0).abs() < 0.12, "{found} instead of {ray}");
+            }
+        }
+    }
+}
+
+#[test]
+fn noise_that_grows_with_the_range_is_no_ray() {
+    let noises: [&dyn Fn(f64) -> f64; 5] =
+        [&|_| 0.0, &|z| 0.0014 * z * z, &|_| 0.01, &|z| 0.001 + 0.0013 * z * z, &|z| 0.003 * z];
+    for (number, noise) in noises.iter().enumerate() {
+        for seed in 1..=5 {
+            assert_eq!(ray_of(room, 0.0, noise, seed), None, "noise {number}, seed {seed}");
+            assert_eq!(ray_of(room, 0.03, noise, seed), None, "noise {number}, seed {seed}");
+        }
+    }
+    // Of one slant alone noise and ray look the same.
+    for slope in [0.001, 0.003, 0.01] {
+        for seed in 1..=5 {
+            assert_eq!(ray_of(|u, v| 0.3 + slope * u + 0.3 * slope * v, 0.0, |z| 0.001 * z * z, seed), None, "{slope}");
+        }
+    }
+    for scene in ["room", "random", "stairs"] {
+        for sensor in ["clean", "clean_mm", "kinect", "tof", "disparity"] {
+            assert_eq!(estimate(&format!("{scene}:sensor={sensor}"), 1).ray, None, "{scene} {sensor}");
+        }
+    }
+}
+
+#[test]
+fn balls_steps_and_rounding_are_no_ray() {
+    // A ball of 0.6 m and one of 0.2 m at 2 m before a wall, seen by a camera of 300 pixels.
+    let ball = |radius: f64| {
+        move |u: f64, v: f64| {
+            let [x, y] = [(u - 180.0) / 300.0, (v - 120.0) / 300.0];
+            let (along, rest) = (2.0, 4.0 - radius * radius);
+            let root = along * along - (1.0 + x * x + y * y) * rest;
+            if root > 0.0 { (along + root.sqrt()) / rest } else { 0.3 }
+        }
+    };
+    let stairs = |u: f64, v: f64| 0.2 + 0.02 * (u / 9.0).floor() + 0.001 * v;
+    for seed in 1..=5 {
+        for noise in [0.0, 0.0003, 0.0014] {
+            for radius in [0.2, 0.6] {
+                assert_eq!(ray_of(ball(radius), 0.0, |z| noise * z * z, seed), None, "{radius} m, noise {noise}");
+            }
+            assert_eq!(ray_of(stairs, 0.0, |z| noise * z * z, seed), None, "stairs, noise {noise}");
+        }
+    }
+    let [width, height] = RAY_MAP;
+    for steps_a_pixel in [0.3, 1.0, 3.0] {
+        let level = |at: usize| (900.0 + steps_a_pixel * ((at % width) as f64 + 0.31 * (at / width) as f64)) as u16;
+        let pixels: Vec<u16> = (0..width * height).map(level).collect();
+        let mut estimator = Estimator::default();
+        estimator.add(DepthView::new(&pixels, width, height).unwrap(), Measure::Disparity).unwrap();
+        assert_eq!(estimator.estimate().unwrap().ray, None, "{steps_a_pixel} steps a pixel");
+    }
 }

@@ -204,6 +204,26 @@ fn a_slant_seen_along_rays_of_whole_pixels_is_one_plane_if_that_is_said() {
 }
 
 #[test]
+fn a_slant_seen_along_rays_of_whole_pixels_is_one_plane_beside_a_wall_if_nothing_is_said() {
+    let mut random = Random::new(7);
+    let mut value = |at: usize| match at % 160 {
+        u @ 80.. => 300.0 + 2.0 * (u as f64 + random.between(-0.5, 0.5)) + 0.5 * (at / 160) as f64,
+        _ => 200.0 + random.between(-0.08, 0.08),
+    };
+    let map: Vec<f32> = (0..160 * 120).map(|at| value(at) as f32).collect();
+    let found = |noise: f64, ray: f64| {
+        let stated = Planar { noise, ray, ..Planar::default() };
+        let sensor = Sensor { measure: Measure::Disparity, ..Sensor::default() };
+        let mut detector = Detector::new(stated).unwrap().sensor(sensor);
+        let found = detector.detect(DepthView::new(&map, 160, 120).unwrap()).unwrap();
+        found.planes.iter().map(|plane| plane.pixel_count).collect::<Vec<_>>()
+    };
+    assert_eq!(found(0.05, 0.05), [80 * 120]);
+    assert_eq!(found(0.05, 0.0), [80 * 120; 2]);
+    assert_eq!(found(0.0, 0.0), [80 * 120; 2]);
+}
+
+#[test]
 fn flat_surfaces_of_one_value_each_are_planes_of_their_own() {
     let (width, height) = (64, 48);
     // Their distance in depth is no step of the sensor's.

@@ -75,6 +75,7 @@ fn estimate_record(estimate: &Estimate) -> Value {
         "blocks": estimate.blocks,
         "range": estimate.range,
         "step": estimate.step,
+        "ray_px": estimate.ray,
         "depth": RANGES_M.map(at),
     });
     match estimate.noise {
@@ -93,7 +94,7 @@ fn space(measure: Measure) -> &'static str {
 }
 
 fn readable(found: &[(String, Estimate)], all: &Estimate) -> String {
-    let mut rows = vec![row(["input", "blocks", "range", "noise", "at 1 m", "at 2 m", "at 3 m", "at 4 m"])];
+    let mut rows = vec![row(["input", "blocks", "range", "noise", "at 1 m", "at 2 m", "at 3 m", "at 4 m", "ray"])];
     rows.extend(found.iter().map(|(name, estimate)| cells(name, estimate)));
     if found.len() > 1 {
         rows.push(cells("all together", all));
@@ -124,6 +125,7 @@ fn cells(name: &str, estimate: &Estimate) -> Vec<String> {
     let mut cells = row([name, &estimate.blocks.to_string(), &range(estimate), &formula(estimate.noise)]);
     let sigma = |z: f64| model.depth_sigma_m(z).map_or("-".to_string(), |sigma| format!("{:.1} mm", 1e3 * sigma));
     cells.extend(RANGES_M.map(sigma));
+    cells.push(estimate.ray.map_or("-".to_string(), |ray| format!("{ray:.2} px")));
     cells
 }
 
@@ -144,14 +146,16 @@ fn formula(noise: SensorNoise) -> String {
     }
 }
 
-/// The flags of `detect` for this noise; `None` if it is 0, which would mean to estimate it.
+/// The flags of `detect` for this noise and ray; `None` if both are what it would estimate or expect without them.
 fn flags(estimate: &Estimate) -> Option<String> {
     let flag = |name: &str, value: f64| format!("--{name} {}", significant(value));
-    match estimate.noise {
+    let mut flags = match estimate.noise {
         SensorNoise::Depth { base, growth } if base + growth > 1e-9 => {
-            Some([flag("noise", base), flag("noise-growth", growth)].join(" "))
+            vec![flag("noise", base), flag("noise-growth", growth)]
         }
-        SensorNoise::Value { sigma } if sigma > 1e-9 => Some(flag("noise", sigma)),
-        _ => None,
-    }
+        SensorNoise::Value { sigma } if sigma > 1e-9 => vec![flag("noise", sigma)],
+        _ => Vec::new(),
+    };
+    flags.extend(estimate.ray.map(|ray| format!("--ray {ray:.2}")));
+    (!flags.is_empty()).then(|| flags.join(" "))
 }

@@ -4,11 +4,12 @@
 //! lie on one smooth surface, so the lower half of the scatter in each stretch of q is noise. What rounding to steps
 //! makes of it, D^2 / 12, is taken off: rounding is part of the map, not of the sensor.
 
+use super::ray::{Slants, Tiled};
 use super::steps::Steps;
 use super::{NoiseModel, SensorNoise, Space};
 use crate::camera::{Measure, Sensor};
 use crate::error::{Error, Result};
-use crate::fit::Moments;
+use crate::fit::{AffineFit, Moments};
 use crate::map::{AnyView, DepthView, Pixel};
 use crate::with_view;
 use std::cmp::Ordering;
@@ -20,6 +21,10 @@ const FLAT: f64 = 0.5;
 /// Columns and rows of a block. It is large enough to span the steps of a sensor that rounds coarsely: within one step
 /// it would show no noise at all.
 const SIDE: usize = 12;
+/// Columns and rows of its tiles, of which the ray is estimated.
+const TILE: usize = 4;
+/// Tiles of a block.
+const TILES: usize = (SIDE / TILE) * (SIDE / TILE);
 /// Share of a block's pixels that have to be valid.
 pub(crate) const VALID: f64 = 0.8;
 /// Fewest blocks that [`Estimator::estimate`] answers from: one a stretch.
@@ -149,6 +154,9 @@ pub struct Estimate {
     /// Where all but a fortieth of the blocks lie on either side, low and high: 1/m for depth maps, map units for all
     /// others.
     pub range: [f64; 2],
+    /// How well the rays of the pixels are known, pixels, one standard deviation; `None` where it is within 0.1, or cannot
+    /// be told from the noise.
+    pub ray: Option<f64>,
 }
 
 impl Estimate {
@@ -177,6 +185,7 @@ impl Estimate {
 #[derive(Debug, Default)]
 pub struct Estimator {
     blocks: Blocks,
+    slants: Slants,
     steps: Steps,
     /// Of the frames so far.
     seen: Option<(Measure, f64)>,
@@ -188,14 +197,14 @@ impl Estimator {
     /// # Errors
     /// [`Error::MixedMeasures`] unless all frames hold depth, or all the same disparity.
     pub fn add<'m>(&mut self, map: impl Into<AnyView<'m>>, measure: Measure) -> Result<()> {
-        let step = with_view!(map.into(), map => self.frame(&map, measure))?;
+        let step = with_view!(map.into(), map => self.frame(&map, measure, true))?;
         let finest = self.seen.map_or(step, |(_, finest)| step.min(finest));
         self.seen = Some((measure, finest));
         Ok(())
     }
 
-    /// Adds a frame's blocks; gives its steps.
-    fn frame<T: Pixel>(&mut self, map: &DepthView<'_, T>, measure: Measure) -> Result<f64> {
+    /// Adds a frame's blocks, also those that the ray is estimated from if that is wanted; gives its steps.
+    fn frame<T: Pixel>(&mut self, map: &DepthView<'_, T>, measure: Measure, of_ray: bool) -> Result<f64> {
         let is_depth = |measure| matches!(measure, Measure::Depth { .. });
         if self.seen.is_some_and(|(seen, _)| seen != measure && !(is_depth(seen) && is_depth(measure))) {
             return Err(Error::MixedMeasures);
@@ -203,8 +212,13 @@ impl Estimator {
         let (space, step) = (Space::of(measure), self.steps.of(map));
         for v in (0..map.height().saturating_sub(SIDE - 1)).step_by(SIDE) {
             for u in (0..map.width().saturating_sub(SIDE - 1)).step_by(SIDE) {
-                let (sums, origin) = block(map, space, u, v);
+                let (tiles, origin) = block(map, space, u, v);
+                let mut sums = Moments::default();
+                tiles.iter().for_each(|tile| sums.merge(tile));
                 self.blocks.add(&sums, origin, space, step);
+                if let Some(tiled) = of_ray.then(|| tiled(&sums, &tiles, origin)).flatten() {
+                    self.slants.add(&tiled, None, space, step);
+                }
             }
         }
         Ok(step)
@@ -220,7 +234,8 @@ impl Estimator {
             return Err(Error::TooFewBlocks { found, least: LEAST });
         };
         let (noise, range) = self.blocks.noise(Space::of(measure));
-        Ok(Estimate { noise, step, blocks: found, measure, range })
+        let ray = self.slants.ray();
+        Ok(Estimate { noise, step, blocks: found, measure, range, ray })
     }
 }
 
@@ -229,7 +244,7 @@ impl NoiseModel {
     pub(crate) fn of_map<T: Pixel>(map: &DepthView<'_, T>, sensor: &Sensor) -> Self {
         let measure = sensor.measure;
         let mut estimator = Estimator::default();
-        let step = estimator.frame(map, measure).expect("one frame has one measure");
+        let step = estimator.frame(map, measure, false).expect("one frame has one measure");
         let stated = sensor.noise.and_then(|noise| NoiseModel::new(measure, noise, step));
         let estimated = || {
             let (noise, _) = estimator.blocks.noise(Space::of(measure));
@@ -239,20 +254,32 @@ impl NoiseModel {
     }
 }
 
-/// The sums of a block's valid pixels about its first pixel and about the q that comes with them.
-fn block<T: Pixel>(map: &DepthView<'_, T>, space: Space, u: usize, v: usize) -> (Moments, f64) {
+/// The sums of the valid pixels of each tile of a block about the block's first pixel and about the q that comes with
+/// the first that is valid.
+fn block<T: Pixel>(map: &DepthView<'_, T>, space: Space, u: usize, v: usize) -> ([Moments; TILES], f64) {
     let validity = map.validity();
-    let (mut sums, mut origin) = (Moments::default(), 0.0);
+    let (mut tiles, mut origin) = ([Moments::default(); TILES], None);
     for dv in 0..SIDE {
         for (du, &value) in map.row(v + dv)[u..u + SIDE].iter().enumerate() {
             if validity.holds(value) {
                 let q = space.q(value.into());
-                if sums.n == 0.0 {
-                    origin = q;
-                }
-                sums.add(du as f64, dv as f64, q - origin);
+                let tile = dv / TILE * (SIDE / TILE) + du / TILE;
+                tiles[tile].add(du as f64, dv as f64, q - *origin.get_or_insert(q));
             }
         }
     }
-    (sums, origin)
+    (tiles, origin.unwrap_or(0.0))
+}
+
+/// What the ray is estimated from, of a block that has enough pixels.
+fn tiled(sums: &Moments, tiles: &[Moments; TILES], origin: f64) -> Option<Tiled> {
+    let squares = |fit: &AffineFit| fit.rms * fit.rms * fit.n;
+    let fit = sums.fit().filter(|fit| fit.n >= VALID * (SIDE * SIDE) as f64)?;
+    let [mut tiles_free, mut tiles_squares] = [0.0; 2];
+    for of_tile in tiles.iter().filter_map(Moments::fit).filter(|of_tile| of_tile.n > 3.0) {
+        tiles_free += of_tile.n - 3.0;
+        tiles_squares += squares(&of_tile);
+    }
+    let (q, [a, b, _]) = (origin + sums.q / sums.n, fit.abc);
+    Some(Tiled { q, gradient: [a, b], n: fit.n, squares: squares(&fit), tiles_free, tiles_squares })
 }

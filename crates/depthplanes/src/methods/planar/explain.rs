@@ -19,7 +19,7 @@ use crate::map::AnyView;
 use crate::methods::noise::stated;
 use crate::methods::tries::{Change, Tries, rounded_down, rounded_up, smaller_min};
 use crate::methods::{Job, Method};
-use crate::noise::{NoiseModel, Space};
+use crate::noise::{NoiseModel, Slants, Space};
 use crate::with_view;
 
 /// Unit of everything that is measured in noise.
@@ -215,6 +215,13 @@ impl Seen {
             Space::Value => finding.with("of the value", sigma, "map units"),
         };
         self.findings.push(finding);
+        let source = match (run.params.ray > 0.0, noise.ray() > Slants::LEAST) {
+            (true, _) => "from the parameters",
+            (false, true) => "estimated from the map",
+            (false, false) => "the least that is expected",
+        };
+        let finding = Finding::new("tiles", "how well its ray is known", source);
+        self.findings.push(finding.with("within", noise.ray(), "pixels"));
     }
 
     /// The region of the tile as it grew and was merged, and whether it is large enough.

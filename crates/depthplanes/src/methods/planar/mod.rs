@@ -82,13 +82,12 @@ const PARAMS: &[Param] = &[
     NOISE_GROWTH,
     Param {
         name: "ray",
-        // Rendered maps scatter by 0.06 (ICL-NUIM), and no camera is calibrated to much better.
-        default: 0.05,
+        default: 0.0,
         min: 0.0,
         max: 100.0,
         kind: ParamKind::Real,
         unit: "pixels",
-        meaning: "How well the ray of a pixel is known, one standard deviation; a slant makes noise of it.",
+        meaning: "How well the ray of a pixel is known, one standard deviation; a slant makes noise of it. With 0 it is estimated from the map, 0.05 and more.",
         source: None,
     },
     Param {
@@ -116,7 +115,8 @@ pub struct Planar {
     /// What the standard deviation of depth grows by with the square of the range, 1/m.
     pub noise_growth: f64,
     /// How well the ray of a pixel is known, pixels, one standard deviation, 0..=100: what a surface's slope makes of it
-    /// comes on top of the noise.
+    /// comes on top of the noise. If it is 0, it is estimated from each map, as 0.05 and more, whether or not the noise
+    /// is stated.
     pub ray: f64,
     /// How far from a plane its pixels may lie, standard deviations, 0.5..=100.
     pub confidence: f64,
@@ -142,7 +142,7 @@ impl Planar {
 
     /// What pixels are held against.
     fn planes<'a>(&self, regions: &'a [Region], noise: &'a NoiseModel, curved: bool) -> Planes<'a> {
-        Planes { regions, noise, ray: self.ray, confidence: self.confidence, curved }
+        Planes { regions, noise, confidence: self.confidence, curved }
     }
 }
 
@@ -268,14 +268,15 @@ impl Runner {
         pyramid.sum(map, space, job.threads, field);
         let model = |noise| NoiseModel::new(sensor.measure, noise, field.step);
         let stated = stated(space, params.noise, params.noise_growth).or(sensor.noise).and_then(model);
+        let ray = if params.ray > 0.0 { params.ray } else { level.ray(pyramid, stated.as_ref(), space, field.step) };
         let estimated = || Some(model(level.estimate(&pyramid.grids[LEVELS - 1], space))?.of_scatter());
-        stated.or_else(estimated).expect("an estimate is of the map's own kind")
+        stated.or_else(estimated).expect("an estimate is of the map's own kind").with_ray(ray)
     }
 
     /// Regions of cells on one plane.
     fn grow(&mut self, noise: &NoiseModel, threads: usize, watch: &mut Watch<'_>) -> Result<()> {
-        let Planar { ray, confidence, .. } = self.params;
-        self.pyramid.expect(noise, ray, confidence, threads);
+        let confidence = self.params.confidence;
+        self.pyramid.expect(noise, confidence, threads);
         self.regions.grow(&mut self.pyramid, confidence);
         self.regions.settle(&mut self.pyramid.grids[0]);
         watch(Moment::Grown, self, noise);

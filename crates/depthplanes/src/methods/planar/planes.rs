@@ -17,8 +17,6 @@ pub(super) fn of_slope(ray: f32, a: f32, b: f32) -> f32 {
 pub(super) struct Planes<'a> {
     pub(super) regions: &'a [Region],
     pub(super) noise: &'a NoiseModel,
-    /// How well the ray of a pixel is known, pixels.
-    pub(super) ray: f64,
     /// How far from a plane its pixels may lie, standard deviations.
     pub(super) confidence: f64,
     /// Whether curved regions have labels, and planes have none.
@@ -49,7 +47,7 @@ impl Planes<'_> {
     #[inline(always)]
     pub(super) fn variance(&self, region: &Region, q: f64) -> f64 {
         let [a, b, _] = region.abc.map(|number| number as f32);
-        self.noise.variance(q) + f64::from(of_slope(self.ray as f32, a, b))
+        self.noise.variance(q) + f64::from(of_slope(self.noise.ray() as f32, a, b))
     }
 
     /// Square of the largest distance from a region's plane at q.

@@ -50,12 +50,12 @@ impl Pyramid {
         field.valid_pixels = in_parts(threads, whole, sum, |a, b| a + b);
     }
 
-    /// Holds the cells against a noise model and how well rays are known, pixels.
-    pub(super) fn expect(&mut self, noise: &NoiseModel, ray: f64, confidence: f64, threads: usize) {
+    /// Holds the cells against a noise model.
+    pub(super) fn expect(&mut self, noise: &NoiseModel, confidence: f64, threads: usize) {
         let expect = |mut cells: Cells<'_>| {
             vectorised(
                 #[inline(always)]
-                || cells.expect(noise, ray as f32, confidence as f32),
+                || cells.expect(noise, confidence as f32),
             );
         };
         in_parts(threads, self.whole(), expect, |(), ()| ());
@@ -119,7 +119,8 @@ impl Rows for Cells<'_> {
 
 impl Cells<'_> {
     #[inline(always)]
-    fn expect(&mut self, noise: &NoiseModel, ray: f32, confidence: f32) {
+    fn expect(&mut self, noise: &NoiseModel, confidence: f32) {
+        let ray = noise.ray() as f32;
         for level in 0..LEVELS {
             let (finer, coarser) = self.grids.split_at_mut(level);
             let grid = &mut coarser[0];
