@@ -145,6 +145,10 @@ impl Slants {
                 sums.add(flat.by, flat.scatter - flat.known, 1.0 / (expected * off));
             }
             unknown = sums.non_negative();
+            // Most maps show no ray, and those that do show it in each round.
+            if unknown[2] == 0.0 {
+                break;
+            }
         }
         unknown
     }
