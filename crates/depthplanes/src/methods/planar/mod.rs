@@ -21,6 +21,7 @@ mod quadratic;
 mod reach;
 mod rule;
 mod seams;
+mod seen;
 mod settle;
 mod strays;
 #[cfg(test)]

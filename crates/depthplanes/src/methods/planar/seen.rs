@@ -1,0 +1,396 @@
+//! What the stages of a run saw of one pixel.
+//!
+//! In: a run at its [`Moment`]s, and what came of it. Out: findings for an explanation. What the stages leave in their buffers
+//! is read as they go; nothing is kept for it in an ordinary run.
+
+use super::assign::{self, Held};
+use super::curved::Sign;
+use super::grid::{Grid, NONE};
+use super::grow::{Region, fewest};
+use super::pieces::Pieces;
+use super::planes::{self, BENT};
+use super::{Moment, Runner};
+use crate::camera::{Hessian, Measure, Sensor};
+use crate::detection::Detection;
+use crate::explanation::{Finding, Limit};
+use crate::group::{Grouper, LinkRule};
+use crate::methods::noise::stated;
+use crate::noise::{NoiseModel, Slants, Space};
+
+/// Unit of everything that is measured in noise.
+const DEVIATIONS: &str = "standard deviations";
+
+/// What happened to the region that a pixel's tile went to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Fate {
+    /// The tile went to none.
+    None,
+    /// Dropped for its size, so many pixels.
+    Small(f64),
+    /// A facet of a curved surface.
+    Curved,
+    /// Its pixels lie on larger planes.
+    Explained,
+    /// It is a plane.
+    Kept,
+}
+
+/// A plane that the pixel was held against.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Against {
+    pub(super) id: u32,
+    /// Standard deviations.
+    pub(super) off: f64,
+    pub(super) is_curved: bool,
+    pub(super) pixels: f64,
+}
+
+/// A piece that was cut off from its region and went to the one around it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stray {
+    pub(super) pixels: usize,
+    /// The region that it went to.
+    pub(super) id: u32,
+    /// The pixel's distance from that one's plane, standard deviations.
+    pub(super) off: f64,
+}
+
+/// What was seen of one pixel.
+pub(super) struct Seen {
+    pub(super) at: [usize; 2],
+    pub(super) sensor: Sensor,
+    pub(super) findings: Vec<Finding>,
+    /// Not a number where nothing was measured.
+    pub(super) q: f64,
+    /// Valid pixels of its tile, and the tile's roughness.
+    pub(super) tile: [f64; 2],
+    pub(super) fate: Fate,
+    /// Its bow as a multiple of what is taken for flat, if that is what makes it curved.
+    pub(super) bow: Option<f64>,
+    pub(super) against: Vec<Against>,
+    /// Most that is accepted, standard deviations.
+    pub(super) most: f64,
+    /// Region image at the pixel.
+    pub(super) assigned: u16,
+    /// Pixels of the connected piece it is in.
+    pub(super) piece: usize,
+    pub(super) is_large: bool,
+    /// The piece itself, if it was cut off.
+    pub(super) stray: Option<Stray>,
+    pub(super) noise: Option<NoiseModel>,
+}
+
+impl Seen {
+    pub(super) fn new(at: [usize; 2], sensor: Sensor) -> Self {
+        Seen {
+            at,
+            sensor,
+            findings: Vec::new(),
+            q: f64::NAN,
+            tile: [0.0; 2],
+            fate: Fate::None,
+            bow: None,
+            against: Vec::new(),
+            most: 0.0,
+            assigned: 0,
+            piece: 0,
+            is_large: false,
+            stray: None,
+            noise: None,
+        }
+    }
+
+    pub(super) fn look(&mut self, moment: Moment, run: &Runner, noise: &NoiseModel) {
+        self.noise = Some(*noise);
+        self.q = run.field.q[self.at[1] * run.field.stride + self.at[0]].into();
+        match moment {
+            Moment::Grown => self.look_at_cells(run),
+            Moment::Merged => self.look_at_region(run),
+            Moment::Judged => self.look_at_judgement(run, noise),
+            Moment::Assigned => self.look_at_planes(run, noise),
+        }
+    }
+
+    /// Index of the cell of a grid that the pixel lies in.
+    fn cell(&self, grid: &Grid) -> usize {
+        self.at[1] / grid.side * grid.columns + self.at[0] / grid.side
+    }
+
+    /// The pixel itself and the noise expected there.
+    pub(super) fn pixel(&self, value: f64) -> Finding {
+        let finding = Finding::new("map", "the pixel", if self.q.is_nan() { "not measured" } else { "" })
+            .with("value", value, "")
+            .refusing(self.q.is_nan());
+        if self.q.is_nan() {
+            return finding;
+        }
+        let finding = match self.sensor.measure.depth_m(value) {
+            Some(depth) => finding.with("depth", depth, "m"),
+            None => finding,
+        };
+        match self.sensor.measure {
+            Measure::Depth { .. } => finding.with("inverse depth", self.q, "1/m"),
+            _ => finding,
+        }
+    }
+
+    fn look_at_cells(&mut self, run: &Runner) {
+        self.describe_noise(run);
+        for grid in run.pyramid.grids.iter().rev() {
+            let at = self.cell(grid);
+            let (n, least) = (f64::from(grid.pixels(at)), f64::from(fewest(grid)));
+            let roughness = f64::from(grid.roughness[at]);
+            let first = self.at.map(|place| place / grid.side * grid.side);
+            let [u, v] = first.map(|first| format!("{first}..{}", first + grid.side - 1));
+            let is_flat = roughness <= 1.0;
+            let outcome = match (n >= least, is_flat) {
+                (true, true) => "flat, may start a region",
+                (true, false) => "too rough to start a region",
+                (false, _) => "too few pixels to start a region",
+            };
+            let subject = format!("cell of {0} x {0}, columns {u}, rows {v}", grid.side);
+            let finding = Finding::new("tiles", subject, outcome).with("pixels", n, "").limit(Limit::AtLeast(least));
+            let finding = if n >= 4.0 && roughness.is_finite() {
+                let rms = f64::from(grid.scatter(at)).sqrt();
+                let finding = finding.with("rms about its own plane", rms, DEVIATIONS);
+                finding.with("roughness", roughness, "").limit(Limit::AtMost(1.0))
+            } else {
+                finding
+            };
+            self.tile = [n, roughness];
+            self.findings.push(finding);
+        }
+    }
+
+    fn describe_noise(&mut self, run: &Runner) {
+        let Some(noise) = self.noise.filter(|_| self.q.is_finite()) else { return };
+        let space = Space::of(self.sensor.measure);
+        let is_of_map = |stated| NoiseModel::new(self.sensor.measure, stated, 0.0).is_some();
+        let source = match (stated(space, run.params.noise, run.params.noise_growth), self.sensor.noise) {
+            (Some(_), _) => "from the parameters",
+            (None, Some(stated)) if is_of_map(stated) => "the sensor's, from its preset or table",
+            _ => "estimated from the map",
+        };
+        let sigma = noise.variance(self.q).sqrt();
+        let finding = Finding::new("tiles", "noise expected of the pixel", source);
+        let finding = match space {
+            Space::InverseDepth { .. } => finding.with("of depth", 1e3 * sigma / (self.q * self.q), "mm"),
+            Space::Value => finding.with("of the value", sigma, "map units"),
+        };
+        self.findings.push(finding);
+        let source = match (run.params.ray > 0.0, noise.ray() > Slants::LEAST) {
+            (true, _) => "from the parameters",
+            (false, true) => "estimated from the map",
+            (false, false) => "the least that is expected",
+        };
+        let finding = Finding::new("tiles", "how well its ray is known", source);
+        self.findings.push(finding.with("within", noise.ray(), "pixels"));
+    }
+
+    /// The region of the tile as it grew and was merged, and whether it is large enough.
+    fn look_at_region(&mut self, run: &Runner) {
+        let grid = &run.pyramid.grids[0];
+        let id = grid.region[self.cell(grid)];
+        if id == NONE {
+            self.findings.push(Finding::new("grow", "the tile", "went to no region"));
+            return;
+        }
+        let root = run.merger.root(id);
+        let region = &run.regions.all[root as usize];
+        let merged = (0..run.regions.all.len() as u32).filter(|&other| run.merger.root(other) == root).count();
+        let subject = match merged {
+            1 => "the region of the tile".to_string(),
+            count => format!("the region of the tile, merged of {count}"),
+        };
+        let is_small = region.sums.n < run.params.least();
+        let least = Limit::AtLeast(run.params.least());
+        let finding = Finding::new("grow", subject, if is_small { "dropped, too small" } else { "" })
+            .with("pixels", region.sums.n, "")
+            .limit(least)
+            .with("rms", (region.squares / region.variance).sqrt(), DEVIATIONS)
+            .refusing(is_small);
+        self.findings.push(self.with_plane(finding, region));
+        if is_small {
+            self.fate = Fate::Small(region.sums.n);
+        }
+    }
+
+    /// Adds the plane in metres, where the camera is known.
+    fn with_plane(&self, finding: Finding, region: &Region) -> Finding {
+        let [a, b, _] = region.abc;
+        let c = region.at(0.0, 0.0);
+        let abc = match self.sensor.measure {
+            Measure::Depth { .. } => [a, b, c],
+            Measure::InverseDepth { slope, offset } => [slope * a, slope * b, slope * c + offset],
+            Measure::Disparity => return finding,
+        };
+        match self.sensor.intrinsics.and_then(|camera| Hessian::from_inverse_depth(abc, &camera)) {
+            Some(plane) => {
+                let [x, y, z] = plane.normal;
+                finding
+                    .with("distance", plane.distance, "m")
+                    .with("normal x", x, "")
+                    .with("normal y", y, "")
+                    .with("normal z", z, "")
+            }
+            None => finding,
+        }
+    }
+
+    /// Whether the region is curved or explained by larger planes.
+    fn look_at_judgement(&mut self, run: &Runner, noise: &NoiseModel) {
+        let grid = &run.pyramid.grids[0];
+        let id = grid.region[self.cell(grid)];
+        if id == NONE {
+            return;
+        }
+        let sign = run.facets.signs[id as usize];
+        let outcome = match sign {
+            None => "not curved".to_string(),
+            Some(Sign::Bow) => "curved: it bows".to_string(),
+            Some(Sign::Joint(other)) => {
+                let pixels = run.regions.all[other as usize].sums.n;
+                format!("curved: it runs on smoothly into a neighbour of {pixels} pixels, on one quadratic")
+            }
+            Some(Sign::Surroundings) => "curved: one quadratic runs through it and what is around it".to_string(),
+            Some(Sign::Turns) => "curved: off its border the surface goes on and turns gently".to_string(),
+            Some(Sign::Continues) => "curved: it continues a curved neighbour".to_string(),
+        };
+        let finding = Finding::new("judge", "is it flat?", outcome).refusing(sign.is_some());
+        self.bow = run.facets.bow(id).filter(|_| sign == Some(Sign::Bow)).map(|[bow, most]| bow / most);
+        let finding = match run.facets.bow(id) {
+            Some([bow, most]) => finding.with("bow", bow, DEVIATIONS).limit(Limit::AtMost(most)),
+            None => finding,
+        };
+        self.findings.push(finding);
+        let planes = run.params.planes(&run.regions.all, noise, false);
+        let share = run.explainer.share(&run.field, grid, &planes, &run.facets.boxes, id);
+        let is_explained = run.explainer.is_explained[id as usize];
+        if let Some([share, most]) = share {
+            let outcome = if is_explained { "dropped, no surface of its own" } else { "a surface of its own" };
+            let finding = Finding::new("judge", "its pixels on larger planes beside it", outcome);
+            let finding = finding.with("share", share, "").limit(Limit::AtMost(most));
+            self.findings.push(finding.refusing(is_explained));
+        }
+        self.fate = match (sign, is_explained) {
+            (_, true) => Fate::Explained,
+            (Some(_), _) => Fate::Curved,
+            _ => Fate::Kept,
+        };
+    }
+
+    /// Which planes the pixel is held against, and how far off it is.
+    fn look_at_planes(&mut self, run: &Runner, noise: &NoiseModel) {
+        let [tiles, blocks, ..] = &run.pyramid.grids;
+        let Held { ids, middle, factor } = assign::held_against([tiles, blocks], self.at);
+        let [u, v] = self.at.map(|place| place as f64);
+        self.most = factor * run.params.confidence;
+        let label = run.image[self.at[1] * run.field.stride + self.at[0]];
+        self.assigned = if label == BENT { 0 } else { label };
+        let planes = run.params.planes(&run.regions.all, noise, false);
+        let held = ids.into_iter().map(|id| {
+            let region = planes.region(id);
+            let sigma = planes.variance(region, region.at(middle[0], middle[1])).sqrt();
+            let off = (self.q - region.at(u, v)).abs() / sigma;
+            Against { id, off, is_curved: region.is_curved, pixels: region.sums.n }
+        });
+        self.against = held.collect();
+        self.against.sort_by(|a, b| a.off.total_cmp(&b.off));
+    }
+
+    /// What the last stages made of it.
+    pub(super) fn conclude(&mut self, run: &Runner, out: &Detection) {
+        if self.q.is_nan() {
+            return;
+        }
+        if self.against.is_empty() {
+            self.findings.push(Finding::new("assign", "the pixel", "no region within a block of 8 x 8").refusing(true));
+        }
+        self.stray = self.find_stray(run);
+        for against in &self.against {
+            let label = label_of(run, out, against.id);
+            let name = match against.is_curved {
+                true => format!("a curved facet of {} pixels", against.pixels),
+                false => named(label, against.pixels),
+            };
+            let outcome = match against.off <= self.most {
+                true if u32::from(self.assigned) == against.id + 1 && self.stray.is_some() => "taken at first",
+                true if u32::from(self.assigned) == against.id + 1 => "taken",
+                true if against.is_curved => "near, but gives no plane",
+                true => "near, but another goes before it",
+                false => "too far",
+            };
+            let finding = Finding::new("assign", format!("the pixel against {name}"), outcome);
+            self.findings.push(finding.with("off", against.off, DEVIATIONS).limit(Limit::AtMost(self.most)));
+        }
+        if self.assigned > 0 {
+            self.conclude_piece(run, out);
+        }
+    }
+
+    /// What became of its connected piece.
+    fn conclude_piece(&mut self, run: &Runner, out: &Detection) {
+        let groups = run.finisher.grouper.groups();
+        self.piece = groups.sizes()[groups.at(self.at) as usize] as usize;
+        self.is_large = self.piece > run.params.min as usize;
+        if let Some(stray) = self.stray {
+            let to = named(out.labels[self.at[1] * out.width + self.at[0]], run.regions.all[stray.id as usize].sums.n);
+            let outcome = format!("cut off from the rest of its own plane, goes to {to} around it");
+            let finding = Finding::new("group", "its connected piece", outcome);
+            self.findings.push(finding.with("pixels", stray.pixels as f64, ""));
+            let finding = Finding::new("group", format!("the pixel against {to}"), "taken with its piece");
+            self.findings.push(finding.with("off", stray.off, DEVIATIONS));
+            return;
+        }
+        let outcome = if self.is_large { "large enough" } else { "too small" };
+        let limit = Limit::MoreThan(run.params.min.into());
+        let finding = Finding::new("group", "its connected piece", outcome).with("pixels", self.piece as f64, "");
+        self.findings.push(finding.limit(limit).refusing(!self.is_large));
+    }
+
+    /// Its piece, if stage "group" puts it with a larger piece of another region.
+    fn find_stray(&self, run: &Runner) -> Option<Stray> {
+        let Runner { params, field, image, regions, finisher, .. } = run;
+        if self.assigned == 0 {
+            return None;
+        }
+        // The pieces as they are before that.
+        let (ids, mut grouper) = (planes::of_image(image, field).ok()?, Grouper::default());
+        grouper.group(&ids, &LinkRule::new(ids.validity(), 0.0).ok()?, 1);
+        Pieces::default().join(field, image, &mut grouper, 1);
+        let (pieces, groups) = (grouper.groups(), finisher.grouper.groups());
+        let label_at = |[u, v]: [usize; 2]| image[v * field.stride + u];
+        let mut label = label_at(self.at);
+        pieces.each_run(|run| {
+            let place = [run.u_first as usize, run.v as usize];
+            if pieces.sizes()[run.group as usize] > params.min && groups.at(place) == groups.at(self.at) {
+                label = label_at(place);
+            }
+        });
+        if label == label_at(self.at) {
+            return None;
+        }
+        let (id, [u, v]) = (u32::from(label) - 1, self.at.map(|place| place as f64));
+        let planes = params.planes(&regions.all, self.noise.as_ref()?, false);
+        let on_plane = planes.region(id).at(u, v);
+        let off = (self.q - on_plane).abs() / planes.variance(planes.region(id), on_plane).sqrt();
+        Some(Stray { pixels: pieces.sizes()[pieces.at(self.at) as usize] as usize, id, off })
+    }
+}
+
+/// A region in words, by the label of its plane, 0 for none.
+fn named(label: u16, pixels: f64) -> String {
+    if label > 0 { format!("plane {label}") } else { format!("a region of {pixels} pixels") }
+}
+
+/// The label that most of a region's pixels have, 0 for none.
+pub(super) fn label_of(run: &Runner, out: &Detection, id: u32) -> u16 {
+    let own_label = run.contacts.label(id);
+    let mut counts = vec![0u32; out.planes.len() + 1];
+    for (ids, labels) in run.image.chunks_exact(run.field.stride).zip(out.labels.chunks_exact(out.width)) {
+        let own = ids.iter().zip(labels).filter(|(own, label)| **own == own_label && **label > 0);
+        own.for_each(|(_, &label)| counts[usize::from(label)] += 1);
+    }
+    let best = (0..counts.len()).rev().max_by_key(|&label| counts[label]).filter(|&label| counts[label] > 0);
+    best.unwrap_or(0) as u16
+}
