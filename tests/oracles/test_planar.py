@@ -62,6 +62,18 @@ def test_synpeb(program, data, tell, tmp_path, setting, least):
     assert share >= least
 
 
+def test_the_ray_of_a_scan_turned_into_a_picture_is_that_of_whole_pixels(program, data):
+    depth = data / "gt_synpeb/ppe_test_500.pinhole_depth.png"
+    command = [program, "noise", depth, "--encoding", "tum", "--json"]
+    noise = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["all"]
+    command = [program, "explain", depth, "--encoding", "tum", "--at", "250,250", "--json"]
+    told = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    # A place anywhere within a pixel is off by 1 / sqrt(12), and planar and noise say the same of it.
+    assert noise["ray_px"] == pytest.approx(12**-0.5, rel=0.15)
+    (finding,) = (one for one in json.loads(told)["findings"] if one["subject"] == "how well its ray is known")
+    assert finding["quantities"][0]["value"] == pytest.approx(noise["ray_px"], rel=0.05)
+
+
 @pytest.mark.parametrize("setting, least", [([], 0.44), (["--noise", "0.004"], 0.46)])
 def test_evops_icl(program, data, tell, tmp_path, setting, least):
     (depth,) = rows(data, "gt_evops/icl_0.depth")

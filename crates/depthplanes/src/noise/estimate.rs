@@ -21,10 +21,9 @@ const FLAT: f64 = 0.5;
 /// Columns and rows of a block. It is large enough to span the steps of a sensor that rounds coarsely: within one step
 /// it would show no noise at all.
 const SIDE: usize = 12;
-/// Columns and rows of its tiles, of which the ray is estimated.
+/// Columns and rows of the blocks that the ray is estimated from, and of their tiles: those of the method `planar`.
+const RAY_SIDE: usize = 16;
 const TILE: usize = 4;
-/// Tiles of a block.
-const TILES: usize = (SIDE / TILE) * (SIDE / TILE);
 /// Share of a block's pixels that have to be valid.
 pub(crate) const VALID: f64 = 0.8;
 /// Fewest blocks that [`Estimator::estimate`] answers from: one a stretch.
@@ -210,15 +209,13 @@ impl Estimator {
             return Err(Error::MixedMeasures);
         }
         let (space, step) = (Space::of(measure), self.steps.of(map));
-        for v in (0..map.height().saturating_sub(SIDE - 1)).step_by(SIDE) {
-            for u in (0..map.width().saturating_sub(SIDE - 1)).step_by(SIDE) {
-                let (tiles, origin) = block(map, space, u, v);
-                let mut sums = Moments::default();
-                tiles.iter().for_each(|tile| sums.merge(tile));
-                self.blocks.add(&sums, origin, space, step);
-                if let Some(tiled) = of_ray.then(|| tiled(&sums, &tiles, origin)).flatten() {
-                    self.slants.add(&tiled, None, space, step);
-                }
+        for place in squares([map.width(), map.height()], SIDE) {
+            let (sums, origin) = square(map, space, place, SIDE);
+            self.blocks.add(&sums, origin, space, step);
+        }
+        for place in squares([map.width(), map.height()], RAY_SIDE).filter(|_| of_ray) {
+            if let Some(tiled) = tiled(map, space, place) {
+                self.slants.add(&tiled, None, space, step);
             }
         }
         Ok(step)
@@ -254,32 +251,43 @@ impl NoiseModel {
     }
 }
 
-/// The sums of the valid pixels of each tile of a block about the block's first pixel and about the q that comes with
-/// the first that is valid.
-fn block<T: Pixel>(map: &DepthView<'_, T>, space: Space, u: usize, v: usize) -> ([Moments; TILES], f64) {
+/// The first (u, v) of each square of so many pixels a side that lies within a size, row by row.
+fn squares([width, height]: [usize; 2], side: usize) -> impl Iterator<Item = [usize; 2]> {
+    let columns = width / side;
+    (0..columns * (height / side)).map(move |at| [at % columns * side, at / columns * side])
+}
+
+/// The sums of a square's valid pixels about its first pixel and about the q that comes with them.
+fn square<T: Pixel>(map: &DepthView<'_, T>, space: Space, [u, v]: [usize; 2], side: usize) -> (Moments, f64) {
     let validity = map.validity();
-    let (mut tiles, mut origin) = ([Moments::default(); TILES], None);
-    for dv in 0..SIDE {
-        for (du, &value) in map.row(v + dv)[u..u + SIDE].iter().enumerate() {
+    let (mut sums, mut origin) = (Moments::default(), 0.0);
+    for dv in 0..side {
+        for (du, &value) in map.row(v + dv)[u..u + side].iter().enumerate() {
             if validity.holds(value) {
                 let q = space.q(value.into());
-                let tile = dv / TILE * (SIDE / TILE) + du / TILE;
-                tiles[tile].add(du as f64, dv as f64, q - *origin.get_or_insert(q));
+                if sums.n == 0.0 {
+                    origin = q;
+                }
+                sums.add(du as f64, dv as f64, q - origin);
             }
         }
     }
-    (tiles, origin.unwrap_or(0.0))
+    (sums, origin)
 }
 
 /// What the ray is estimated from, of a block that has enough pixels.
-fn tiled(sums: &Moments, tiles: &[Moments; TILES], origin: f64) -> Option<Tiled> {
-    let squares = |fit: &AffineFit| fit.rms * fit.rms * fit.n;
-    let fit = sums.fit().filter(|fit| fit.n >= VALID * (SIDE * SIDE) as f64)?;
+fn tiled<T: Pixel>(map: &DepthView<'_, T>, space: Space, [u, v]: [usize; 2]) -> Option<Tiled> {
+    let squared = |fit: &AffineFit| fit.rms * fit.rms * fit.n;
+    let (sums, origin) = square(map, space, [u, v], RAY_SIDE);
+    let fit = sums.fit().filter(|fit| fit.n >= VALID * (RAY_SIDE * RAY_SIDE) as f64)?;
     let [mut tiles_free, mut tiles_squares] = [0.0; 2];
-    for of_tile in tiles.iter().filter_map(Moments::fit).filter(|of_tile| of_tile.n > 3.0) {
-        tiles_free += of_tile.n - 3.0;
-        tiles_squares += squares(&of_tile);
+    for [du, dv] in squares([RAY_SIDE; 2], TILE) {
+        let tile = square(map, space, [u + du, v + dv], TILE).0.fit();
+        if let Some(tile) = tile.filter(|tile| tile.n > 3.0) {
+            tiles_free += tile.n - 3.0;
+            tiles_squares += squared(&tile);
+        }
     }
     let (q, [a, b, _]) = (origin + sums.q / sums.n, fit.abc);
-    Some(Tiled { q, gradient: [a, b], n: fit.n, squares: squares(&fit), tiles_free, tiles_squares })
+    Some(Tiled { q, gradient: [a, b], n: fit.n, squares: squared(&fit), tiles_free, tiles_squares })
 }

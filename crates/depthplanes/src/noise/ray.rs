@@ -25,7 +25,7 @@ const SHOWN: usize = 16;
 const AGREED: f64 = 1.5;
 /// What the scatter of tiles about the plane of their block may be of that about their own, each over its degrees of
 /// freedom, and the reverse. A flat block of 16 x 16 pixels that err independently has 1 in the mean, with a standard
-/// deviation of 0.23 (F of 45 and 208 degrees of freedom), one of 12 x 12 pixels 0.32.
+/// deviation of 0.23 (F of 45 and 208 degrees of freedom).
 const ALIKE: f64 = 2.0;
 /// Blocks that are looked at, at most about; each tells its scatter to a tenth.
 const SAMPLE: usize = 2048;
