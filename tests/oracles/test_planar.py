@@ -49,7 +49,7 @@ def test_middlebury(program, data, tell, tmp_path):
     assert all(one["f_score"] >= 0.95 for one in found)
 
 
-@pytest.mark.parametrize("setting, least", [([], 0.86), (["--ray", "0.3"], 0.88)])
+@pytest.mark.parametrize("setting, least", [([], 0.86), (["--ray", "0.3"], 0.88), (["--ray", "0.05"], 0.6)])
 def test_synpeb(program, data, tell, tmp_path, setting, least):
     found = []
     for depth in sorted(data.glob("gt_synpeb/*.pinhole_depth.png")):

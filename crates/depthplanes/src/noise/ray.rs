@@ -105,8 +105,8 @@ impl Slants {
         }
     }
 
-    /// The ray that explains how the scatter grows with the slope, pixels; `None` where it is near [`Slants::LEAST`], or too few
-    /// blocks show one that they agree on.
+    /// The ray that explains how the scatter grows with the slope, pixels; `None` where it is near [`Slants::LEAST`], or
+    /// too few blocks show one that they agree on.
     ///
     /// Rays are not equally well known everywhere, and a plane has to hold together everywhere: it is the upper quartile
     /// over the blocks that show it.
@@ -185,7 +185,8 @@ impl Normal {
         cases.max_by(|a, b| gain(a).total_cmp(&gain(b))).unwrap_or_default()
     }
 
-    /// The equations of some unknowns alone, the others being 0, by Gauss's elimination; `None` if they have no solution or one below 0.
+    /// The equations of some unknowns alone, the others being 0, by Gauss's elimination; `None` if they have no solution
+    /// or one below 0.
     fn solved(&self, free: [bool; 3]) -> Option<[f64; 3]> {
         let mut rows: [[f64; 4]; 3] = std::array::from_fn(|i| {
             let of = |j: usize| match (free[i] && free[j], i == j) {

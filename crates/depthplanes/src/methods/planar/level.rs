@@ -2,7 +2,7 @@
 //!
 //! In: the cells of a map. Out: its scatter, estimated from the coarsest as [`crate::noise::Estimator`] does from
 //! pixels, but with what rounding does to them: the tolerance of the method is for both. And the ray, from how the scatter
-//! of the finest grows with the slope.
+//! of those coarsest cells that are flat by their tiles grows with the slope.
 
 use super::grid::{Grid, Place};
 use super::tiles::{LEVELS, Pyramid};
@@ -29,7 +29,8 @@ impl Level {
         self.blocks.noise(space).0
     }
 
-    /// How well rays are known, pixels, the noise being the stated one if there is one; `step` is that of the values, map units.
+    /// How well rays are known, pixels, the noise being the stated one if there is one; `step` is that of the values, map
+    /// units.
     pub(super) fn ray(&mut self, pyramid: &Pyramid, stated: Option<&NoiseModel>, space: Space, step: f64) -> f64 {
         let [tiles, .., cells] = &pyramid.grids;
         let stride = Slants::stride(cells.len());
