@@ -6,7 +6,8 @@
 //! is around it, one quadratic runs on smoothly, while the crease of two planes leaves it far off: the best
 //! parabola through a roof misses its ridge by 3/16 of the height. And a small region continues a curved one.
 
-use super::grid::{Grid, NONE, Place};
+use super::bows::{Bows, LARGE, LEAST};
+use super::grid::{Grid, NONE, Place, each_run};
 use super::grow::{Region, Regions};
 use super::merge::Pair;
 use super::quadratic::{Frame, Sums};
@@ -15,28 +16,11 @@ use super::turns::Border;
 use crate::group::reserve_to;
 use crate::methods::rays::Rays;
 use crate::noise::NoiseModel;
-use std::ops::Range;
 
-/// Largest root mean square, in noise deviations of a pixel, of a plane's bow. Noise alone gives a region of
-/// 240 pixels 0.11 (three terms of a quadratic).
-const BOW: f64 = 0.375;
-/// Pixels from which on a sensor's own distortion counts: it bows a plane the more, the larger its picture. What is so
-/// large is no facet beside others either.
-const LARGE: f64 = 4000.0;
-
-/// [`BOW`] for a region of so many pixels; it grows with the root of the region's side.
-fn most_bow(pixels: f64) -> f64 {
-    BOW * (pixels / LARGE).max(1.0).sqrt().sqrt()
-}
-
-/// Fewest pixels of a region whose bow means something.
-const LEAST: f64 = 240.0;
 /// Fewest cells that a quadratic, six numbers, is fitted to.
 const ENOUGH: f64 = 12.0;
 /// Fewest cells of each side of a joint.
 const FEW: f64 = 4.0;
-/// Cells of a region that are enough to see its shape: where so many coarse ones lie in it, finer ones are not looked at.
-const PLENTY: f64 = 40.0;
 /// Largest mean square, in variances of a pixel, by which cell means may miss a quadratic that explains them.
 const SMOOTH: f64 = 0.12;
 /// The same for a small region beside one that is known to be curved.
@@ -90,12 +74,8 @@ impl CellBox {
 /// Memory of this stage.
 #[derive(Debug, Default)]
 pub(super) struct Facets {
-    sums: Vec<Sums>,
-    /// For each region what a quadratic explains beyond its plane.
-    bows: Vec<f64>,
+    pub(super) bows: Bows,
     pub(super) boxes: Vec<CellBox>,
-    /// For each region the coarsest grid that shows its shape.
-    levels: Vec<u8>,
     /// For each region what shows that it is a facet of a curved surface, if anything.
     pub(super) signs: Vec<Option<Sign>>,
 }
@@ -122,7 +102,7 @@ struct Scene<'a> {
     noise: &'a NoiseModel,
     is_strip: &'a [bool],
     boxes: &'a [CellBox],
-    levels: &'a [u8],
+    bows: &'a Bows,
 }
 
 impl Facets {
@@ -136,7 +116,7 @@ impl Facets {
     /// nothing of others: through a strip and a narrow plane beside it there often is a quadratic.
     pub(super) fn mark(
         &mut self,
-        pyramid: &mut Pyramid,
+        pyramid: &Pyramid,
         regions: &mut Regions,
         pairs: &[Pair],
         is_strip: &[bool],
@@ -144,22 +124,18 @@ impl Facets {
         rays: &Rays,
     ) {
         let cells = pyramid.grids[0].len();
-        reserve_to(&mut self.sums, cells);
-        reserve_to(&mut self.bows, cells);
-        reserve_to(&mut self.levels, cells);
         reserve_to(&mut self.signs, cells);
-        pyramid.hand_up();
-        let Facets { sums, bows, boxes, levels, signs } = self;
-        mark_bowed(pyramid, &regions.all, sums, levels, signs);
-        signs.iter_mut().zip(is_strip).filter(|(_, is_strip)| **is_strip).for_each(|(sign, _)| *sign = None);
-        bows.extend(sums.iter().map(Sums::bow));
-        let scene = Scene { pyramid, all: &regions.all, noise, is_strip, boxes, levels };
+        let Facets { bows, boxes, signs } = self;
+        signs.clear();
+        let is_bowed = |(id, is_strip): (u32, &bool)| !is_strip && bows.is_bowed(id);
+        signs.extend((0..).zip(is_strip).map(|region| is_bowed(region).then_some(Sign::Bow)));
+        let scene = Scene { pyramid, all: &regions.all, noise, is_strip, boxes, bows };
         for pair in pairs.iter().filter(|pair| !scene.has_strip(pair) && !scene.are_apart(pair)) {
             let [a, b] = pair.ids;
             let is_larger = boxes[a as usize].area() < boxes[b as usize].area();
             let [small, large] = if is_larger { [a, b] } else { [b, a] };
             let is_known = [small, large].iter().all(|&id| signs[id as usize].is_some());
-            if is_known || scene.is_sharp(small, large) || bows[small as usize] + bows[large as usize] < GAIN {
+            if is_known || scene.is_sharp(small, large) || bows.gain(small) + bows.gain(large) < GAIN {
                 continue;
             }
             if let Some(seen) = scene.joint(small, |id| id == large).is_smooth() {
@@ -182,13 +158,6 @@ impl Facets {
         }
         while scene.spread(pairs, signs) {}
         regions.all.iter_mut().zip(signs).for_each(|(region, sign)| region.is_curved |= sign.is_some());
-    }
-
-    /// Root mean square of a plane's bow, in noise deviations of a pixel, and the most that is taken for flat; none for
-    /// a region that is too small to tell.
-    pub(super) fn bow(&self, id: u32) -> Option<[f64; 2]> {
-        let (bow, pixels) = (self.bows[id as usize], self.sums[id as usize].pixels);
-        (pixels >= LEAST).then(|| [(bow.max(0.0) / pixels).sqrt(), most_bow(pixels)])
     }
 }
 
@@ -263,7 +232,7 @@ impl Scene<'_> {
     /// Looks at a region and at those that `neighbours` names, within its box and as much again on each side.
     fn joint(&self, small: u32, neighbours: impl Fn(u32) -> bool) -> Joint {
         let plane = &self.all[small as usize];
-        let level = usize::from(self.levels[small as usize]);
+        let level = self.bows.level(small);
         let grid = &self.pyramid.grids[level];
         let around = self.boxes[small as usize].widened(level, grid);
         let frame = Frame::of(plane);
@@ -281,72 +250,11 @@ impl Scene<'_> {
     }
 }
 
-/// Calls `visit` for each run of a row's cells that have one region: the region, the columns.
-fn each_run(row: &[u32], first: usize, mut visit: impl FnMut(u32, Range<usize>)) {
-    let mut start = 0;
-    while start < row.len() {
-        let id = row[start];
-        let end = run_end(row, start);
-        if id != NONE {
-            visit(id, first + start..first + end);
-        }
-        start = end;
-    }
-}
-
-/// Where the run that begins at `start` ends.
-#[inline(always)]
-fn run_end(row: &[u32], start: usize) -> usize {
-    let id = row[start];
-    let alike = |cells: &[u32; 8]| cells.iter().fold(true, |all, &other| all & (other == id));
-    let (eights, _) = row[start..].as_chunks::<8>();
-    let passed = start + 8 * eights.iter().position(|cells| !alike(cells)).unwrap_or(eights.len());
-    passed + row[passed..].iter().position(|&other| other != id).unwrap_or(row.len() - passed)
-}
-
 fn find_boxes(grid: &Grid, regions: usize, boxes: &mut Vec<CellBox>) {
     boxes.clear();
     boxes.resize(regions, CellBox::NOTHING);
     for (row, ids) in grid.region.chunks_exact(grid.columns).enumerate() {
         each_run(ids, 0, |id, columns| boxes[id as usize].include([columns.start, columns.end - 1], row));
-    }
-}
-
-/// Marks regions whose cell means follow a quadratic by more than [`BOW`], each on the coarsest grid where it has
-/// plenty of cells.
-fn mark_bowed(
-    pyramid: &Pyramid,
-    all: &[Region],
-    sums: &mut Vec<Sums>,
-    levels: &mut Vec<u8>,
-    signs: &mut Vec<Option<Sign>>,
-) {
-    const OPEN: u8 = u8::MAX;
-    signs.clear();
-    signs.resize(all.len(), None);
-    levels.clear();
-    levels.resize(all.len(), OPEN);
-    sums.clear();
-    sums.resize(all.len(), Sums::default());
-    for (level, grid) in pyramid.grids.iter().enumerate().rev() {
-        for (sums, _) in sums.iter_mut().zip(levels.iter()).filter(|(_, level)| **level == OPEN) {
-            *sums = Sums::default();
-        }
-        for (row, ids) in grid.region.chunks_exact(grid.columns).enumerate() {
-            each_run(ids, 0, |id, columns| {
-                if levels[id as usize] == OPEN {
-                    let region = &all[id as usize];
-                    sums[id as usize].add_run(grid, row, columns, region, region, &Frame::of(region));
-                }
-            });
-        }
-        for ((sums, seen), sign) in sums.iter().zip(levels.iter_mut()).zip(signs.iter_mut()) {
-            if *seen == OPEN && (sums.cells >= PLENTY || level == 0) {
-                *seen = level as u8;
-                let bows = sums.pixels >= LEAST && sums.bow() > most_bow(sums.pixels).powi(2) * sums.pixels;
-                *sign = bows.then_some(Sign::Bow);
-            }
-        }
     }
 }
 

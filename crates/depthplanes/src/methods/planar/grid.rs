@@ -6,6 +6,7 @@
 use super::field::Field;
 use crate::fit::Moments;
 use crate::parallel::Rows;
+use std::ops::Range;
 
 /// No region.
 pub(super) const NONE: u32 = u32::MAX;
@@ -233,6 +234,29 @@ impl Grid {
             Place { column, row: below },
         ]
     }
+}
+
+/// Calls `visit` for each run of a row's cells that have one region: the region, the columns.
+pub(super) fn each_run(row: &[u32], first: usize, mut visit: impl FnMut(u32, Range<usize>)) {
+    let mut start = 0;
+    while start < row.len() {
+        let id = row[start];
+        let end = run_end(row, start);
+        if id != NONE {
+            visit(id, first + start..first + end);
+        }
+        start = end;
+    }
+}
+
+/// Where the run that begins at `start` ends.
+#[inline(always)]
+fn run_end(row: &[u32], start: usize) -> usize {
+    let id = row[start];
+    let alike = |cells: &[u32; 8]| cells.iter().fold(true, |all, &other| all & (other == id));
+    let (eights, _) = row[start..].as_chunks::<8>();
+    let passed = start + 8 * eights.iter().position(|cells| !alike(cells)).unwrap_or(eights.len());
+    passed + row[passed..].iter().position(|&other| other != id).unwrap_or(row.len() - passed)
 }
 
 /// Where a cell lies in its grid.

@@ -257,8 +257,8 @@ impl Seen {
             Some(Sign::Continues) => "curved: it continues a curved neighbour".to_string(),
         };
         let finding = Finding::new("judge", "is it flat?", outcome).refusing(sign.is_some());
-        self.bow = run.facets.bow(id).filter(|_| sign == Some(Sign::Bow)).map(|[bow, most]| bow / most);
-        let finding = match run.facets.bow(id) {
+        self.bow = run.facets.bows.rms(id).filter(|_| sign == Some(Sign::Bow)).map(|[bow, most]| bow / most);
+        let finding = match run.facets.bows.rms(id) {
             Some([bow, most]) => finding.with("bow", bow, DEVIATIONS).limit(Limit::AtMost(most)),
             None => finding,
         };
