@@ -42,16 +42,6 @@ fn split<W: Rows, A: Send>(
     unite(a, b)
 }
 
-/// Does two things that need nothing of each other, side by side if there are threads for it.
-pub(crate) fn side_by_side(threads: usize, a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
-    if threads > 1 {
-        both(a, b);
-    } else {
-        a();
-        b();
-    }
-}
-
 /// Does both, side by side if there is a thread for it.
 #[cfg(feature = "parallel")]
 fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {

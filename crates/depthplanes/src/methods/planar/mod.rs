@@ -40,7 +40,6 @@ use crate::explanation::Explanation;
 use crate::group::Grouper;
 use crate::map::{AnyView, DepthView, Pixel};
 use crate::noise::{NoiseModel, Space};
-use crate::parallel::side_by_side;
 use crate::with_view;
 use bent::Bent;
 use contact::Contacts;
@@ -230,7 +229,7 @@ impl Runner {
         job.done("tiles");
         self.grow(&noise, job.threads, watch)?;
         job.done("grow");
-        self.judge(&noise, &Rays::of(&job.sensor, map.width(), map.height()), job.threads, watch);
+        self.judge(&noise, &Rays::of(&job.sensor, map.width(), map.height()), watch);
         job.done("judge");
         self.assign(&noise, false, job.threads);
         self.reach(&noise, job.threads);
@@ -289,17 +288,13 @@ impl Runner {
     }
 
     /// Which regions are no surface, and which of the others are curved.
-    fn judge(&mut self, noise: &NoiseModel, rays: &Rays, threads: usize, watch: &mut Watch<'_>) {
+    fn judge(&mut self, noise: &NoiseModel, rays: &Rays, watch: &mut Watch<'_>) {
         let Runner { params, field, pyramid, regions, merger, facets, explainer, .. } = self;
         facets.find_boxes(&pyramid.grids[0], regions);
         pyramid.hand_up();
         let planes = params.planes(&regions.all, noise, false);
-        let Facets { boxes, bows, .. } = facets;
-        side_by_side(
-            threads,
-            || explainer.find(field, &pyramid.grids[0], &planes, &merger.pairs, boxes),
-            || bows.measure(pyramid, planes.regions),
-        );
+        explainer.find(field, &pyramid.grids[0], &planes, &merger.pairs, &facets.boxes);
+        facets.bows.measure(pyramid, &regions.all);
         facets.mark(pyramid, regions, &merger.pairs, &explainer.is_explained, noise, rays);
         watch(Moment::Judged, self, noise);
         let Runner { pyramid, regions, merger, explainer, .. } = self;
