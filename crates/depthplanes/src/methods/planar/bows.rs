@@ -17,7 +17,7 @@ const BOW: f64 = 0.375;
 pub(super) const LARGE: f64 = 4000.0;
 
 /// [`BOW`] for a region of so many pixels; it grows with the root of the region's side.
-fn most_bow(pixels: f64) -> f64 {
+pub(super) fn most_bow(pixels: f64) -> f64 {
     BOW * (pixels / LARGE).max(1.0).sqrt().sqrt()
 }
 

@@ -20,7 +20,7 @@ const LARGER: f64 = 2.0;
 /// deviations.
 const STRIP: f64 = 7.0;
 /// Most larger planes that are held against a region.
-const MOST: usize = 8;
+pub(super) const MOST: usize = 8;
 
 /// Finds explained regions; reuses its memory.
 #[derive(Debug, Default)]
@@ -57,6 +57,11 @@ impl Explainer {
         }));
     }
 
+    /// The larger planes beside a region that may explain some of it.
+    pub(super) fn larger(&self, id: u32) -> &[u32] {
+        &self.larger[id as usize][..self.counts[id as usize]]
+    }
+
     /// The share of a region's pixels that lies on larger planes beside it, and the most that a plane of its own has;
     /// none if there is no such plane.
     pub(super) fn share(
@@ -67,7 +72,7 @@ impl Explainer {
         boxes: &[CellBox],
         id: u32,
     ) -> Option<[f64; 2]> {
-        let others = &self.larger[id as usize][..self.counts[id as usize]];
+        let others = self.larger(id);
         (!others.is_empty()).then(|| [share_on(field, grid, planes, id, others, &boxes[id as usize]), EXPLAINED])
     }
 }

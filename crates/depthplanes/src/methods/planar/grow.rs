@@ -43,7 +43,7 @@ pub(super) struct Region {
 }
 
 impl Region {
-    fn of(cell: &Cell) -> Self {
+    pub(super) fn of(cell: &Cell) -> Self {
         let mut region = Region {
             sums: cell.moments(cell.origin()),
             origin: cell.origin(),

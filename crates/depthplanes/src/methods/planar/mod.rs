@@ -20,6 +20,7 @@ mod pieces;
 mod planes;
 mod quadratic;
 mod reach;
+mod relief;
 mod rule;
 mod seams;
 mod seen;
@@ -52,6 +53,7 @@ use merge::Merger;
 use pieces::Pieces;
 use planes::Planes;
 use reach::Reach;
+use relief::Relief;
 use seams::Seams;
 use strays::Strays;
 use tiles::{LEVELS, Pyramid};
@@ -174,6 +176,7 @@ struct Runner {
     merger: Merger,
     facets: Facets,
     explainer: Explainer,
+    relief: Relief,
     image: Vec<u16>,
     seams: Seams,
     reach: Reach,
@@ -289,12 +292,18 @@ impl Runner {
 
     /// Which regions are no surface, and which of the others are curved.
     fn judge(&mut self, noise: &NoiseModel, rays: &Rays, watch: &mut Watch<'_>) {
-        let Runner { params, field, pyramid, regions, merger, facets, explainer, .. } = self;
+        let Runner { params, field, pyramid, regions, merger, facets, explainer, relief, .. } = self;
         facets.find_boxes(&pyramid.grids[0], regions);
         pyramid.hand_up();
         let planes = params.planes(&regions.all, noise, false);
         explainer.find(field, &pyramid.grids[0], &planes, &merger.pairs, &facets.boxes);
         facets.bows.measure(pyramid, &regions.all);
+        let Facets { bows, boxes, .. } = facets;
+        let confidence = params.confidence;
+        if relief.relieve(&mut pyramid.grids[0], regions, explainer, bows, boxes, confidence) {
+            pyramid.hand_up();
+            bows.measure(pyramid, &regions.all);
+        }
         facets.mark(pyramid, regions, &merger.pairs, &explainer.is_explained, noise, rays);
         watch(Moment::Judged, self, noise);
         let Runner { pyramid, regions, merger, explainer, .. } = self;
