@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::explanation::Explanation;
 use crate::map::AnyView;
 use crate::methods::{self, Job, Method};
+use crate::parallel::on_threads;
 
 /// Finds planes in frame after frame; after the first frame of a size it allocates nothing.
 ///
@@ -127,7 +128,7 @@ impl Detector {
     pub fn detect_observed<'m>(
         &mut self,
         map: impl Into<AnyView<'m>>,
-        observer: &mut dyn FnMut(&'static str),
+        observer: &mut (dyn FnMut(&'static str) + Send),
     ) -> Result<&Detection> {
         if self.joiner.is_some() {
             self.sensor.check_metric("merge-coplanar")?;
@@ -135,7 +136,8 @@ impl Detector {
         self.detection.parts.clear();
         let joiner = self.joiner.as_mut();
         let mut job = Job { sensor: self.sensor, threads: self.threads, curved: self.curved, joiner, observer };
-        self.method.run(map.into(), &mut job, &mut self.detection)?;
+        let (map, method, detection) = (map.into(), &mut self.method, &mut self.detection);
+        on_threads(self.threads, || method.run(map, &mut job, detection))?;
         Ok(&self.detection)
     }
 

@@ -26,6 +26,12 @@ pub(crate) fn in_parts<W: Rows, A: Send>(
     split(parts, whole, &work, &unite)
 }
 
+/// Does the work where several threads share what it hands to [`in_parts`], if there is more than one: threads that go to
+/// sleep between its stages take longer to wake than some stages take.
+pub(crate) fn on_threads<A: Send>(threads: usize, work: impl FnOnce() -> A + Send) -> A {
+    if threads > 1 { both(work, || ()).0 } else { work() }
+}
+
 fn split<W: Rows, A: Send>(
     parts: usize,
     whole: W,

@@ -153,7 +153,7 @@ pub struct Job<'a> {
     /// Joins coplanar planes, if that is wanted.
     pub joiner: Option<&'a mut Joiner>,
     /// Told the name of each stage as it ends.
-    pub observer: &'a mut dyn FnMut(&'static str),
+    pub observer: &'a mut (dyn FnMut(&'static str) + Send),
 }
 
 impl Job<'_> {

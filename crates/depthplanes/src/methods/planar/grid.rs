@@ -212,28 +212,33 @@ impl Grid {
         }
     }
 
-    /// The next column of a row, from `first` on, whose cell has no region.
-    #[inline(always)]
-    pub(super) fn next_free(&self, row: usize, first: usize) -> Option<usize> {
-        let row = &self.region[row * self.columns..][..self.columns];
-        // Most cells have one: eight are passed over at a time.
-        let (eights, _) = row[first..].as_chunks::<8>();
-        let is_taken = |cells: &[u32; 8]| cells.iter().fold(true, |all, &id| all & (id != NONE));
-        let passed = first + 8 * eights.iter().position(|cells| !is_taken(cells)).unwrap_or(eights.len());
-        Some(passed + row[passed..].iter().position(|&id| id == NONE)?)
-    }
-
     /// The four neighbours of a cell; at the map's edge itself in place of those that are missing.
     #[inline(always)]
-    pub(super) fn neighbours(&self, Place { column, row }: Place) -> [Place; 4] {
-        let [right, below] = [(column + 1).min(self.columns as u32 - 1), (row + 1).min(self.rows as u32 - 1)];
+    pub(super) fn neighbours(&self, place: Place) -> [Place; 4] {
+        self.neighbours_within(place, &(0..self.rows))
+    }
+
+    /// The same, as if there were some rows only.
+    #[inline(always)]
+    pub(super) fn neighbours_within(&self, Place { column, row }: Place, rows: &Range<usize>) -> [Place; 4] {
+        let [last_column, first, last] = [self.columns - 1, rows.start, rows.end - 1].map(|place| place as u32);
         [
             Place { column: column.saturating_sub(1), row },
-            Place { column: right, row },
-            Place { column, row: row.saturating_sub(1) },
-            Place { column, row: below },
+            Place { column: (column + 1).min(last_column), row },
+            Place { column, row: row.saturating_sub(1).max(first) },
+            Place { column, row: (row + 1).min(last) },
         ]
     }
+}
+
+/// The next column of a row of regions, from `first` on, whose cell has none.
+#[inline(always)]
+pub(super) fn next_free(row: &[u32], first: usize) -> Option<usize> {
+    // Most cells have one: eight are passed over at a time.
+    let (eights, _) = row[first..].as_chunks::<8>();
+    let is_taken = |cells: &[u32; 8]| cells.iter().fold(true, |all, &id| all & (id != NONE));
+    let passed = first + 8 * eights.iter().position(|cells| !is_taken(cells)).unwrap_or(eights.len());
+    Some(passed + row[passed..].iter().position(|&id| id == NONE)?)
 }
 
 /// Calls `visit` for each run of a row's cells that have one region: the region, the columns.

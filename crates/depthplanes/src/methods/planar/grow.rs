@@ -4,12 +4,17 @@
 //! goes from the coarsest cells to the finest: large flat cells give regions whose planes are
 //! well known before the small cells along the borders are asked. A cell joins by its squared residuals
 //! about the region's plane, which its sums give without touching a pixel; among cells of one size, seeds are
-//! taken in order of their own scatter.
+//! taken in order of their own scatter. A large map is grown over in bands of rows, which threads share; its size
+//! alone decides on them. Regions that a band's edge cuts are merged as any others are (stage "merge").
 
-use super::grid::{Cell, Grid, NONE, Place};
-use super::tiles::{LEVELS, Pyramid, SIDE};
+use super::grid::{Cell, Grid, NONE, Place, next_free};
+use super::tiles::{LEVELS, Pyramid, SIDE, hand_down};
 use crate::fit::Moments;
 use crate::group::reserve_to;
+use crate::parallel::{Rows, in_parts};
+use std::array::from_fn;
+use std::mem::take;
+use std::ops::Range;
 
 /// Below so many pixels a region's plane is too uncertain to be held against a neighbour: the cell is
 /// tested against the plane of both.
@@ -20,6 +25,11 @@ const REFIT: f64 = 1.125;
 const OF_TILE: f32 = 0.5;
 /// Fewest pixels of a larger cell that starts or joins one: half of a cell may lie in a gap that it would reach over.
 const OF_CELL: f32 = 0.75;
+
+/// Pixels of a band, about: more than most sensors' whole frames have, so that few planes are cut.
+const BAND: usize = 1 << 19;
+/// Most bands of a map.
+const BANDS: usize = 8;
 
 /// Cells on one plane.
 #[derive(Clone, Copy, Debug)]
@@ -114,94 +124,205 @@ impl Region {
 #[derive(Debug, Default)]
 pub(super) struct Regions {
     pub(super) all: Vec<Region>,
-    /// Cells that may start a region: the bits of their scatter, which is not negative, and behind them the cell.
-    seeds: Vec<u64>,
-    /// Cells whose neighbours are still to be asked.
-    queue: Vec<Place>,
+    bands: Vec<Band>,
     /// For each region whether a tile went over to it or from it.
     pub(super) has_changed: Vec<bool>,
 }
 
+/// The regions of some rows; reuses its memory.
+#[derive(Debug, Default)]
+struct Band {
+    /// Rows of the coarsest cells.
+    rows: Range<usize>,
+    all: Vec<Region>,
+    work: Work,
+}
+
+/// Memory of growth.
+#[derive(Debug, Default)]
+struct Work {
+    /// Cells that may start a region: the bits of their scatter, which is not negative, and behind them the cell.
+    seeds: Vec<u64>,
+    /// Cells whose neighbours are still to be asked.
+    queue: Vec<Place>,
+}
+
 impl Regions {
-    /// Grows regions over a pyramid.
-    pub(super) fn grow(&mut self, pyramid: &mut Pyramid, confidence: f64) {
-        let cells = pyramid.grids[0].len();
-        reserve_to(&mut self.all, cells);
-        reserve_to(&mut self.seeds, cells);
-        reserve_to(&mut self.queue, cells);
-        for level in (0..LEVELS).rev() {
-            let grid = &mut pyramid.grids[level];
-            self.grow_on(grid, level > 0, confidence);
-            self.seed(grid, level > 0, confidence);
-            if level > 0 {
-                pyramid.hand_down(level);
+    /// Grows regions over a pyramid, on as many threads.
+    pub(super) fn grow(&mut self, pyramid: &mut Pyramid, confidence: f64, threads: usize) {
+        reserve_to(&mut self.all, pyramid.grids[0].len());
+        self.cut(pyramid);
+        let mut regions = pyramid.grids.each_mut().map(|grid| take(&mut grid.region));
+        let grow = |Bands { bands, mut regions, pyramid }: Bands<'_>| {
+            for band in bands {
+                let own = from_fn(|level| {
+                    let columns = pyramid.grids[level].columns;
+                    regions[level].split_off_mut(..band.rows_on(level).len() * columns).expect("the band's rows")
+                });
+                band.grow(pyramid, own, confidence);
             }
+        };
+        let whole = regions.each_mut().map(|region| &mut region[..]);
+        in_parts(threads, Bands { bands: &mut self.bands, regions: whole, pyramid }, grow, |(), ()| ());
+        pyramid.grids.iter_mut().zip(regions).for_each(|(grid, region)| grid.region = region);
+        self.unite(&mut pyramid.grids[0]);
+    }
+
+    /// Cuts a map into bands of nearly as many rows.
+    fn cut(&mut self, pyramid: &Pyramid) {
+        let [tiles, .., cells] = &pyramid.grids;
+        let count = (tiles.len() * SIDE * SIDE).div_ceil(BAND).min(BANDS);
+        let rows = cells.rows.div_ceil(count);
+        self.bands.resize_with(cells.rows.div_ceil(rows), Band::default);
+        for (band, first) in self.bands.iter_mut().zip((0..).step_by(rows)) {
+            band.rows = first..(first + rows).min(cells.rows);
+            let tiles = band.rows_on(0).len() * tiles.columns;
+            reserve_to(&mut band.all, tiles);
+            reserve_to(&mut band.work.seeds, tiles);
+            reserve_to(&mut band.work.queue, tiles);
+        }
+    }
+
+    /// Numbers the regions of all bands.
+    fn unite(&mut self, tiles: &mut Grid) {
+        for band in &self.bands {
+            let before = self.all.len() as u32;
+            self.all.extend(&band.all);
+            if before > 0 {
+                let rows = band.rows_on(0);
+                let region = &mut tiles.region[rows.start * tiles.columns..rows.end * tiles.columns];
+                region.iter_mut().for_each(|id| *id += if *id == NONE { 0 } else { before });
+            }
+        }
+    }
+}
+
+impl Band {
+    /// Its rows of the cells of a level.
+    fn rows_on(&self, level: usize) -> Range<usize> {
+        let finer = LEVELS - 1 - level;
+        self.rows.start << finer..self.rows.end << finer
+    }
+
+    /// Grows its regions; `regions`: for each level and cell of its rows the region.
+    fn grow(&mut self, pyramid: &Pyramid, mut regions: [&mut [u32]; LEVELS], confidence: f64) {
+        for level in (0..LEVELS).rev() {
+            let (grid, rows) = (&pyramid.grids[level], self.rows_on(level));
+            let (finer, coarser) = regions.split_at_mut(level + 1);
+            if let [coarser, ..] = coarser {
+                hand_down(grid, rows.start, coarser, finer[level]);
+            }
+            let Band { all, work, .. } = self;
+            let mut area = Area { grid, confidence, rows, region: &mut *finer[level], all, work };
+            area.grow_on();
+            area.seed();
         }
         self.all.iter_mut().for_each(Region::refit);
     }
+}
 
+/// Bands to be grown over, with the regions of their cells.
+struct Bands<'a> {
+    bands: &'a mut [Band],
+    regions: [&'a mut [u32]; LEVELS],
+    pyramid: &'a Pyramid,
+}
+
+impl Rows for Bands<'_> {
+    fn rows(&self) -> usize {
+        self.bands.len()
+    }
+
+    fn cut(self, count: usize) -> (Self, Self) {
+        let Bands { bands, regions, pyramid } = self;
+        let (first, second) = bands.split_at_mut(count);
+        let mut level = 0;
+        let [a, b, c] = regions.map(|region| {
+            let rows = second[0].rows_on(level).start - first[0].rows_on(level).start;
+            level += 1;
+            region.split_at_mut(rows * pyramid.grids[level - 1].columns)
+        });
+        (
+            Bands { bands: first, regions: [a.0, b.0, c.0], pyramid },
+            Bands { bands: second, regions: [a.1, b.1, c.1], pyramid },
+        )
+    }
+}
+
+/// Rows of a grid over which regions grow; there is nothing beyond them.
+struct Area<'a> {
+    grid: &'a Grid,
+    confidence: f64,
+    rows: Range<usize>,
+    /// For each cell of the rows its region, or [`NONE`].
+    region: &'a mut [u32],
+    all: &'a mut Vec<Region>,
+    work: &'a mut Work,
+}
+
+impl Area<'_> {
     /// Lets the regions that came down from coarser cells grow on.
-    fn grow_on(&mut self, grid: &mut Grid, only_flat: bool, confidence: f64) {
-        self.queue.clear();
+    fn grow_on(&mut self) {
+        self.work.queue.clear();
         if self.all.is_empty() {
             return;
         }
-        for row in 0..grid.rows {
+        for row in self.rows.clone() {
             let mut next = 0;
-            while let Some(column) = grid.next_free(row, next) {
+            while let Some(column) = self.next_free(row, next) {
                 next = column + 1;
                 let place = Place { row: row as u32, column: column as u32 };
-                if may_join(grid, grid.at(place), only_flat) {
-                    for beside in grid.neighbours(place) {
-                        let id = grid.region[grid.at(beside)];
-                        if id != NONE && self.take(grid, id, place, only_flat, confidence) {
+                if may_join(self.grid, self.grid.at(place)) {
+                    for beside in self.neighbours(place) {
+                        let id = self.region[self.at(beside)];
+                        if id != NONE && self.take(id, place) {
                             break;
                         }
                     }
                 }
             }
         }
-        self.spread(grid, only_flat, confidence);
+        self.spread();
     }
 
     /// Starts regions from the flat cells that are left, the flattest first.
-    fn seed(&mut self, grid: &mut Grid, only_flat: bool, confidence: f64) {
+    fn seed(&mut self) {
+        let grid = self.grid;
         let least = fewest(grid);
-        self.seeds.clear();
-        for row in 0..grid.rows {
+        self.work.seeds.clear();
+        for row in self.rows.clone() {
             let mut next = 0;
-            while let Some(column) = grid.next_free(row, next) {
+            while let Some(column) = self.next_free(row, next) {
                 next = column + 1;
                 let at = row * grid.columns + column;
                 if grid.roughness[at] <= 1.0 && grid.pixels(at) >= least {
-                    self.seeds.push(u64::from(grid.scatter(at).to_bits()) << 32 | at as u64);
+                    self.work.seeds.push(u64::from(grid.scatter(at).to_bits()) << 32 | at as u64);
                 }
             }
         }
-        self.seeds.sort_unstable();
-        for i in 0..self.seeds.len() {
-            let at = self.seeds[i] as u32 as usize;
-            if grid.region[at] == NONE {
-                let seed = grid.place(at);
-                grid.region[at] = self.all.len() as u32;
+        self.work.seeds.sort_unstable();
+        for i in 0..self.work.seeds.len() {
+            let seed = grid.place(self.work.seeds[i] as u32 as usize);
+            let at = self.at(seed);
+            if self.region[at] == NONE {
+                self.region[at] = self.all.len() as u32;
                 self.all.push(Region::of(&grid.cell(seed)));
-                self.queue.clear();
-                self.queue.push(seed);
-                self.spread(grid, only_flat, confidence);
+                self.work.queue.clear();
+                self.work.queue.push(seed);
+                self.spread();
             }
         }
     }
 
     /// Lets regions take in the neighbours of the cells in the queue.
-    fn spread(&mut self, grid: &mut Grid, only_flat: bool, confidence: f64) {
+    fn spread(&mut self) {
         let mut next = 0;
-        while let Some(&place) = self.queue.get(next) {
+        while let Some(&place) = self.work.queue.get(next) {
             next += 1;
-            let id = grid.region[grid.at(place)];
-            for beside in grid.neighbours(place) {
-                let at = grid.at(beside);
-                if grid.region[at] == NONE && may_join(grid, at, only_flat) {
-                    self.take(grid, id, beside, only_flat, confidence);
+            let id = self.region[self.at(place)];
+            for beside in self.neighbours(place) {
+                if self.region[self.at(beside)] == NONE && may_join(self.grid, self.grid.at(beside)) {
+                    self.take(id, beside);
                 }
             }
         }
@@ -209,26 +330,49 @@ impl Regions {
 
     /// Gives a cell to a region and to the queue, if it lies on its plane.
     #[inline(always)]
-    fn take(&mut self, grid: &mut Grid, id: u32, place: Place, only_flat: bool, confidence: f64) -> bool {
-        let takes = self.all[id as usize].takes(&grid.cell(place), only_flat, confidence);
+    fn take(&mut self, id: u32, place: Place) -> bool {
+        let takes = self.all[id as usize].takes(&self.grid.cell(place), is_large(self.grid), self.confidence);
         if takes {
-            let at = grid.at(place);
-            grid.region[at] = id;
-            self.queue.push(place);
+            let at = self.at(place);
+            self.region[at] = id;
+            self.work.queue.push(place);
         }
         takes
     }
+
+    /// Where a cell's region stands.
+    #[inline(always)]
+    fn at(&self, place: Place) -> usize {
+        self.grid.at(place) - self.rows.start * self.grid.columns
+    }
+
+    #[inline(always)]
+    fn next_free(&self, row: usize, first: usize) -> Option<usize> {
+        next_free(&self.region[(row - self.rows.start) * self.grid.columns..][..self.grid.columns], first)
+    }
+
+    /// The four neighbours of a cell; at the edge itself in place of those that are missing.
+    #[inline(always)]
+    fn neighbours(&self, place: Place) -> [Place; 4] {
+        self.grid.neighbours_within(place, &self.rows)
+    }
+}
+
+/// Whether cells are larger than tiles: only flat ones join then.
+#[inline(always)]
+fn is_large(grid: &Grid) -> bool {
+    grid.side > SIDE
 }
 
 /// Whether a cell has what it takes to join a region.
 #[inline(always)]
-fn may_join(grid: &Grid, at: usize, only_flat: bool) -> bool {
-    if only_flat { grid.pixels(at) >= fewest(grid) && grid.roughness[at] <= 1.0 } else { grid.pixels(at) >= 3.0 }
+fn may_join(grid: &Grid, at: usize) -> bool {
+    if is_large(grid) { grid.pixels(at) >= fewest(grid) && grid.roughness[at] <= 1.0 } else { grid.pixels(at) >= 3.0 }
 }
 
 /// Fewest pixels of a cell that starts a region.
 #[inline(always)]
 pub(super) fn fewest(grid: &Grid) -> f32 {
-    let share = if grid.side > SIDE { OF_CELL } else { OF_TILE };
+    let share = if is_large(grid) { OF_CELL } else { OF_TILE };
     share * (grid.side * grid.side) as f32
 }

@@ -282,7 +282,7 @@ impl Runner {
     fn grow(&mut self, noise: &NoiseModel, threads: usize, watch: &mut Watch<'_>) -> Result<()> {
         let confidence = self.params.confidence;
         self.pyramid.expect(noise, confidence, threads);
-        self.regions.grow(&mut self.pyramid, confidence);
+        self.regions.grow(&mut self.pyramid, confidence, threads);
         self.regions.settle(&mut self.pyramid.grids[0]);
         watch(Moment::Grown, self, noise);
         self.merger.merge(&self.pyramid.grids[0], &mut self.regions);

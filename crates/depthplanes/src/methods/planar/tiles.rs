@@ -65,21 +65,6 @@ impl Pyramid {
         Cells { grids: self.grids.each_mut().map(Grid::whole) }
     }
 
-    /// Gives the regions of a grid's cells to those of the cells' parts that have a pixel.
-    pub(super) fn hand_down(&mut self, level: usize) {
-        let (finer, coarser) = self.grids.split_at_mut(level);
-        let (parts, grid) = (&mut finer[level - 1], &coarser[0]);
-        for row in 0..parts.rows {
-            let above = &grid.region[row / 2 * grid.columns..][..grid.columns];
-            let here = row * parts.columns..(row + 1) * parts.columns;
-            let pixels = parts.sums.n[here.clone()].as_chunks::<2>().0;
-            for ((part, pixels), &region) in parts.region[here].as_chunks_mut::<2>().0.iter_mut().zip(pixels).zip(above)
-            {
-                *part = pixels.map(|pixels| if pixels > 0.0 { region } else { NONE });
-            }
-        }
-    }
-
     /// Gives each coarse cell the region that its four parts agree on.
     pub(super) fn hand_up(&mut self) {
         for level in 1..LEVELS {
@@ -93,6 +78,19 @@ impl Pyramid {
                     *cell = if [above[1], below[0], below[1]] == [id; 3] { id } else { NONE };
                 }
             }
+        }
+    }
+}
+
+/// Gives the regions of cells to those of their parts that have a pixel; the parts begin in row `first`.
+pub(super) fn hand_down(parts: &Grid, first: usize, regions: &[u32], to: &mut [u32]) {
+    let rows =
+        to.chunks_exact_mut(parts.columns).zip(parts.sums.n[first * parts.columns..].chunks_exact(parts.columns));
+    for (row, (to, pixels)) in rows.enumerate() {
+        let above = &regions[row / 2 * (parts.columns / 2)..];
+        for ((part, pixels), &region) in to.as_chunks_mut::<2>().0.iter_mut().zip(pixels.as_chunks::<2>().0).zip(above)
+        {
+            *part = pixels.map(|pixels| if pixels > 0.0 { region } else { NONE });
         }
     }
 }
