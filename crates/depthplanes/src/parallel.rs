@@ -69,6 +69,24 @@ impl<T: Send> Rows for &mut [T] {
     }
 }
 
+/// Things and the number of the first.
+pub(crate) struct Numbered<'a, T> {
+    pub(crate) first: usize,
+    pub(crate) all: &'a mut [T],
+}
+
+impl<T: Send> Rows for Numbered<'_, T> {
+    fn rows(&self) -> usize {
+        self.all.len()
+    }
+
+    fn cut(self, rows: usize) -> (Self, Self) {
+        let Numbered { first, all } = self;
+        let (above, below) = all.split_at_mut(rows);
+        (Numbered { first, all: above }, Numbered { first: first + rows, all: below })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::in_parts;

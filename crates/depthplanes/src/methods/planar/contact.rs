@@ -8,29 +8,40 @@ use super::merge::{BEND, bend};
 use super::planes::BENT;
 use super::seams::Seams;
 use crate::group::{reserve_to, vectorised};
+use crate::parallel::{Numbered, in_parts};
 
 /// Pixels that get their labels together.
 const ABREAST: usize = 16;
 /// Slots of the table of pairs that were just met; a power of two.
 const RECENT: usize = 256;
 
+/// Rows of an image that are looked through at a time.
+const ROWS: usize = 64;
+
 /// Joins regions that touch; reuses its memory.
 #[derive(Debug, Default)]
 pub(super) struct Contacts {
-    /// Labels of regions that touch, the smaller first.
+    /// What touches in some rows each.
+    parts: Vec<Touching>,
+    /// What touches where planes reached on.
+    reached: Touching,
     pairs: Vec<[u16; 2]>,
-    recent: Vec<[u16; 2]>,
     /// For each label the one that it becomes.
     into: Vec<u16>,
 }
 
-impl Contacts {
-    /// Lists the regions that touch in an image.
-    pub(super) fn list(&mut self, seams: &Seams, image: &[u16]) {
-        reserve_to(&mut self.pairs, 4 * image.len());
+/// Labels of regions that touch, the smaller first.
+#[derive(Debug, Default)]
+pub(super) struct Touching {
+    pairs: Vec<[u16; 2]>,
+    recent: Vec<[u16; 2]>,
+}
+
+impl Touching {
+    fn prepare(&mut self, pixels: usize) {
+        reserve_to(&mut self.pairs, 4 * pixels);
         self.recent.clear();
         self.recent.resize(RECENT, [0; 2]);
-        seams.each(image, |a, b| self.touch(a, b));
     }
 
     /// Lists two regions, if they are two planes.
@@ -45,10 +56,30 @@ impl Contacts {
             }
         }
     }
+}
+
+impl Contacts {
+    /// Lists the regions that touch in an image, on as many threads; where planes reach on is still to be added.
+    pub(super) fn list(&mut self, seams: &Seams, image: &[u16], threads: usize) -> &mut Touching {
+        let rows = seams.rows();
+        self.parts.resize_with(rows.div_ceil(ROWS), Touching::default);
+        let list = |parts: Numbered<'_, Touching>| {
+            for (number, part) in (parts.first..).zip(parts.all) {
+                let rows = number * ROWS..((number + 1) * ROWS).min(rows);
+                part.prepare(rows.len() * image.len() / seams.rows());
+                seams.each(rows, image, |a, b| part.touch(a, b));
+            }
+        };
+        in_parts(threads, Numbered { first: 0, all: &mut self.parts }, list, |(), ()| ());
+        self.reached.prepare(image.len());
+        &mut self.reached
+    }
 
     /// Joins the listed regions in the image, and their sums.
     pub(super) fn join(&mut self, all: &mut [Region], image: &mut [u16]) {
-        let Contacts { pairs, into, .. } = self;
+        let Contacts { parts, reached, pairs, into } = self;
+        reserve_to(pairs, 8 * image.len());
+        parts.iter().chain([&*reached]).for_each(|part| pairs.extend(&part.pairs));
         reserve_to(into, image.len());
         into.extend(0..=all.len() as u16);
         pairs.sort_unstable();

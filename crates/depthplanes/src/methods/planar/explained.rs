@@ -11,6 +11,7 @@ use super::merge::Pair;
 use super::planes::Planes;
 use super::tiles::SIDE;
 use crate::group::reserve_to;
+use crate::parallel::{Numbered, in_parts};
 
 /// A region goes if more than this share of its pixels lies on larger planes beside it.
 const EXPLAINED: f64 = 0.7;
@@ -33,7 +34,15 @@ pub(super) struct Explainer {
 
 impl Explainer {
     /// Finds the regions of which most pixels lie on larger planes beside them.
-    pub(super) fn find(&mut self, field: &Field, grid: &Grid, planes: &Planes<'_>, pairs: &[Pair], boxes: &[CellBox]) {
+    pub(super) fn find(
+        &mut self,
+        field: &Field,
+        grid: &Grid,
+        planes: &Planes<'_>,
+        pairs: &[Pair],
+        boxes: &[CellBox],
+        threads: usize,
+    ) {
         let Explainer { larger, counts, is_explained } = self;
         reserve_to(larger, grid.len());
         reserve_to(counts, grid.len());
@@ -51,10 +60,15 @@ impl Explainer {
                 }
             }
         }
-        is_explained.extend((0..planes.regions.len()).map(|id| {
-            let others = &larger[id][..counts[id]];
-            !others.is_empty() && share_on(field, grid, planes, id as u32, others, &boxes[id]) > EXPLAINED
-        }));
+        is_explained.resize(planes.regions.len(), false);
+        let find = |part: Numbered<'_, bool>| {
+            for (id, is_explained) in (part.first..).zip(part.all) {
+                let others = &larger[id][..counts[id]];
+                *is_explained =
+                    !others.is_empty() && share_on(field, grid, planes, id as u32, others, &boxes[id]) > EXPLAINED;
+            }
+        };
+        in_parts(threads, Numbered { first: 0, all: is_explained }, find, |(), ()| ());
     }
 
     /// The larger planes beside a region that may explain some of it.

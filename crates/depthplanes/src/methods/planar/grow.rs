@@ -8,6 +8,7 @@
 //! alone decides on them. Regions that a band's edge cuts are merged as any others are (stage "merge").
 
 use super::grid::{Cell, Grid, NONE, Place, next_free};
+use super::settle::Move;
 use super::tiles::{LEVELS, Pyramid, SIDE, hand_down};
 use crate::fit::Moments;
 use crate::group::reserve_to;
@@ -124,18 +125,20 @@ impl Region {
 #[derive(Debug, Default)]
 pub(super) struct Regions {
     pub(super) all: Vec<Region>,
-    bands: Vec<Band>,
+    pub(super) bands: Vec<Band>,
     /// For each region whether a tile went over to it or from it.
     pub(super) has_changed: Vec<bool>,
 }
 
 /// The regions of some rows; reuses its memory.
 #[derive(Debug, Default)]
-struct Band {
+pub(super) struct Band {
     /// Rows of the coarsest cells.
     rows: Range<usize>,
     all: Vec<Region>,
     work: Work,
+    /// Tiles that go over to other regions once all have grown.
+    pub(super) moves: Vec<Move>,
 }
 
 /// Memory of growth.
@@ -152,19 +155,7 @@ impl Regions {
     pub(super) fn grow(&mut self, pyramid: &mut Pyramid, confidence: f64, threads: usize) {
         reserve_to(&mut self.all, pyramid.grids[0].len());
         self.cut(pyramid);
-        let mut regions = pyramid.grids.each_mut().map(|grid| take(&mut grid.region));
-        let grow = |Bands { bands, mut regions, pyramid }: Bands<'_>| {
-            for band in bands {
-                let own = from_fn(|level| {
-                    let columns = pyramid.grids[level].columns;
-                    regions[level].split_off_mut(..band.rows_on(level).len() * columns).expect("the band's rows")
-                });
-                band.grow(pyramid, own, confidence);
-            }
-        };
-        let whole = regions.each_mut().map(|region| &mut region[..]);
-        in_parts(threads, Bands { bands: &mut self.bands, regions: whole, pyramid }, grow, |(), ()| ());
-        pyramid.grids.iter_mut().zip(regions).for_each(|(grid, region)| grid.region = region);
+        in_bands(&mut self.bands, pyramid, threads, |band, pyramid, regions| band.grow(pyramid, regions, confidence));
         self.unite(&mut pyramid.grids[0]);
     }
 
@@ -180,6 +171,7 @@ impl Regions {
             reserve_to(&mut band.all, tiles);
             reserve_to(&mut band.work.seeds, tiles);
             reserve_to(&mut band.work.queue, tiles);
+            reserve_to(&mut band.moves, tiles);
         }
     }
 
@@ -199,7 +191,7 @@ impl Regions {
 
 impl Band {
     /// Its rows of the cells of a level.
-    fn rows_on(&self, level: usize) -> Range<usize> {
+    pub(super) fn rows_on(&self, level: usize) -> Range<usize> {
         let finer = LEVELS - 1 - level;
         self.rows.start << finer..self.rows.end << finer
     }
@@ -221,7 +213,29 @@ impl Band {
     }
 }
 
-/// Bands to be grown over, with the regions of their cells.
+/// Does the work on each band, on as many threads; it is handed the regions of the band's cells, a grid's at a time.
+pub(super) fn in_bands(
+    bands: &mut [Band],
+    pyramid: &mut Pyramid,
+    threads: usize,
+    work: impl Fn(&mut Band, &Pyramid, [&mut [u32]; LEVELS]) + Sync,
+) {
+    let mut regions = pyramid.grids.each_mut().map(|grid| take(&mut grid.region));
+    let work_on = |Bands { bands, mut regions, pyramid }: Bands<'_>| {
+        for band in bands {
+            let own = from_fn(|level| {
+                let cells = band.rows_on(level).len() * pyramid.grids[level].columns;
+                regions[level].split_off_mut(..cells).expect("the band's rows")
+            });
+            work(band, pyramid, own);
+        }
+    };
+    let whole = Bands { bands, regions: regions.each_mut().map(|region| &mut region[..]), pyramid };
+    in_parts(threads, whole, work_on, |(), ()| ());
+    pyramid.grids.iter_mut().zip(regions).for_each(|(grid, region)| grid.region = region);
+}
+
+/// Bands with the regions of their cells.
 struct Bands<'a> {
     bands: &'a mut [Band],
     regions: [&'a mut [u32]; LEVELS],

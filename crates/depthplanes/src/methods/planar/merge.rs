@@ -8,7 +8,9 @@ use super::grow::{Region, Regions};
 use crate::error::{Error, Result};
 use crate::fit::Moments;
 use crate::group::reserve_to;
+use crate::parallel::{Numbered, in_parts};
 use crate::select::MAX_PLANES;
+use std::ops::Range;
 
 /// Two regions with tiles side by side, or with one tile of no region between.
 #[derive(Clone, Copy, Debug)]
@@ -43,30 +45,39 @@ fn slot([a, b]: [u32; 2]) -> usize {
 
 /// Slots of the table of pairs that were just met; a power of two.
 const RECENT: usize = 1024;
+/// Rows of tiles that are looked through at a time.
+const ROWS: usize = 64;
 
 /// Merges regions; reuses its memory.
 #[derive(Debug, Default)]
 pub(super) struct Merger {
     pub(super) pairs: Vec<Pair>,
-    /// For pairs by hash, where the pair stands that was last met there.
-    recent: Vec<u32>,
+    parts: Vec<Part>,
     /// For each region the one that it becomes.
     into: Vec<u32>,
     has_changed: Vec<bool>,
     order: Vec<u32>,
 }
 
+/// The pairs in some rows of tiles.
+#[derive(Debug, Default)]
+struct Part {
+    pairs: Vec<Pair>,
+    /// For pairs by hash, where the pair stands that was last met there.
+    recent: Vec<u32>,
+}
+
 impl Merger {
     /// Joins neighbouring regions that one plane explains as well as two, the most alike first. Those that
-    /// became part of another are still listed.
-    pub(super) fn merge(&mut self, grid: &Grid, regions: &mut Regions) {
+    /// became part of another are still listed. On as many threads.
+    pub(super) fn merge(&mut self, grid: &Grid, regions: &mut Regions, threads: usize) {
         reserve_to(&mut self.pairs, 4 * grid.len());
         for memory in [&mut self.into, &mut self.order] {
             reserve_to(memory, 4 * grid.len());
         }
         reserve_to(&mut self.has_changed, grid.len());
         self.into.extend(0..regions.all.len() as u32);
-        self.list_pairs(grid);
+        self.list_pairs(grid, threads);
         while self.merge_best(&mut regions.all) {}
     }
 
@@ -94,47 +105,17 @@ impl Merger {
         id
     }
 
-    fn list_pairs(&mut self, grid: &Grid) {
-        let Merger { pairs, recent, .. } = self;
-        recent.clear();
-        recent.resize(RECENT, NONE);
-        let Grid { columns, rows, region, .. } = grid;
-        let side = grid.side as f64;
-        let mut touch = |a: u32, b: u32, column: usize, row: usize| {
-            let ids = [a.min(b), a.max(b)];
-            let at = [column, row].map(|place| (place as f64 + 0.5) * side);
-            let met = Pair { ids, contacts: 1.0, at, cost: f64::NAN };
-            let recent = &mut recent[slot(ids)];
-            match pairs.get_mut(*recent as usize) {
-                Some(pair) if pair.ids == ids => pair.add(&met),
-                _ => {
-                    *recent = pairs.len() as u32;
-                    pairs.push(met);
-                }
+    /// Lists the pairs of regions side by side, on as many threads.
+    fn list_pairs(&mut self, grid: &Grid, threads: usize) {
+        let Merger { pairs, parts, .. } = self;
+        parts.resize_with(grid.rows.div_ceil(ROWS), Part::default);
+        let list = |parts: Numbered<'_, Part>| {
+            for (number, part) in (parts.first..).zip(parts.all) {
+                part.list(grid, number * ROWS..((number + 1) * ROWS).min(grid.rows));
             }
         };
-        for row in 0..*rows {
-            let own = row * columns;
-            let below = own + if row + 1 < *rows { *columns } else { 0 };
-            let (here, below) = (&region[own..own + columns], &region[below..below + columns]);
-            for first in (0..*columns).step_by(ABREAST) {
-                if is_alike(here, below, first) {
-                    continue;
-                }
-                for column in first..(first + ABREAST).min(*columns) {
-                    let at = own + column;
-                    for (step, room) in [(1, columns - 1 - column), (*columns, rows - 1 - row)] {
-                        if region[at] != NONE && room > 0 && region[at + step] != region[at] {
-                            let is_gap = region[at + step] == NONE && room > 1;
-                            let beside = region[if is_gap { at + 2 * step } else { at + step }];
-                            if beside != NONE && beside != region[at] {
-                                touch(region[at], beside, column, row);
-                            }
-                        }
-                    }
-                }
-            }
-        }
+        in_parts(threads, Numbered { first: 0, all: &mut parts[..] }, list, |(), ()| ());
+        parts.iter().for_each(|part| pairs.extend(&part.pairs));
         unite(pairs);
     }
 
@@ -195,6 +176,53 @@ impl Merger {
         regions.all.retain(|_| numbers.next() != Some(&NONE));
         into.clear();
         into.extend(0..regions.all.len() as u32);
+    }
+}
+
+impl Part {
+    /// Lists the pairs that a tile of some rows makes with the next to its right or below.
+    fn list(&mut self, grid: &Grid, of: Range<usize>) {
+        let Part { pairs, recent } = self;
+        let Grid { columns, rows, region, .. } = grid;
+        reserve_to(pairs, 2 * of.len() * columns);
+        recent.clear();
+        recent.resize(RECENT, NONE);
+        let side = grid.side as f64;
+        let mut touch = |a: u32, b: u32, column: usize, row: usize| {
+            let ids = [a.min(b), a.max(b)];
+            let at = [column, row].map(|place| (place as f64 + 0.5) * side);
+            let met = Pair { ids, contacts: 1.0, at, cost: f64::NAN };
+            let recent = &mut recent[slot(ids)];
+            match pairs.get_mut(*recent as usize) {
+                Some(pair) if pair.ids == ids => pair.add(&met),
+                _ => {
+                    *recent = pairs.len() as u32;
+                    pairs.push(met);
+                }
+            }
+        };
+        for row in of {
+            let own = row * columns;
+            let below = own + if row + 1 < *rows { *columns } else { 0 };
+            let (here, below) = (&region[own..own + columns], &region[below..below + columns]);
+            for first in (0..*columns).step_by(ABREAST) {
+                if is_alike(here, below, first) {
+                    continue;
+                }
+                for column in first..(first + ABREAST).min(*columns) {
+                    let at = own + column;
+                    for (step, room) in [(1, columns - 1 - column), (*columns, rows - 1 - row)] {
+                        if region[at] != NONE && room > 0 && region[at + step] != region[at] {
+                            let is_gap = region[at + step] == NONE && room > 1;
+                            let beside = region[if is_gap { at + 2 * step } else { at + step }];
+                            if beside != NONE && beside != region[at] {
+                                touch(region[at], beside, column, row);
+                            }
+                        }
+                    }
+                }
+            }
+        }
     }
 }
 

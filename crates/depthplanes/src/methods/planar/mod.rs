@@ -232,7 +232,7 @@ impl Runner {
         job.done("tiles");
         self.grow(&noise, job.threads, watch)?;
         job.done("grow");
-        self.judge(&noise, &Rays::of(&job.sensor, map.width(), map.height()), watch);
+        self.judge(&noise, &Rays::of(&job.sensor, map.width(), map.height()), job.threads, watch);
         job.done("judge");
         self.assign(&noise, false, job.threads);
         self.reach(&noise, job.threads);
@@ -251,7 +251,7 @@ impl Runner {
         let threads = job.threads;
         let join = |grouper: &mut Grouper| {
             pieces.join(field, image, grouper, threads);
-            strays.join(field, image, &planes, params.min, grouper);
+            strays.join(field, image, &planes, params.min, grouper, threads);
         };
         finisher.finish_united(&map, &ids, &wanted, join, job, out)?;
         out.curved = match job.curved {
@@ -283,20 +283,20 @@ impl Runner {
         let confidence = self.params.confidence;
         self.pyramid.expect(noise, confidence, threads);
         self.regions.grow(&mut self.pyramid, confidence, threads);
-        self.regions.settle(&mut self.pyramid.grids[0]);
+        self.regions.settle(&mut self.pyramid, threads);
         watch(Moment::Grown, self, noise);
-        self.merger.merge(&self.pyramid.grids[0], &mut self.regions);
+        self.merger.merge(&self.pyramid.grids[0], &mut self.regions, threads);
         watch(Moment::Merged, self, noise);
         self.merger.drop_small(&mut self.pyramid.grids[0], &mut self.regions, self.params.least())
     }
 
     /// Which regions are no surface, and which of the others are curved.
-    fn judge(&mut self, noise: &NoiseModel, rays: &Rays, watch: &mut Watch<'_>) {
+    fn judge(&mut self, noise: &NoiseModel, rays: &Rays, threads: usize, watch: &mut Watch<'_>) {
         let Runner { params, field, pyramid, regions, merger, facets, explainer, relief, .. } = self;
         facets.find_boxes(&pyramid.grids[0], regions);
         pyramid.hand_up();
         let planes = params.planes(&regions.all, noise, false);
-        explainer.find(field, &pyramid.grids[0], &planes, &merger.pairs, &facets.boxes);
+        explainer.find(field, &pyramid.grids[0], &planes, &merger.pairs, &facets.boxes, threads);
         facets.bows.measure(pyramid, &regions.all);
         let Facets { bows, boxes, .. } = facets;
         let confidence = params.confidence;
@@ -328,7 +328,7 @@ impl Runner {
         let Runner { params, field, regions, image, seams, reach, contacts, .. } = self;
         let planes = params.planes(&regions.all, noise, false);
         seams.find(&image[..field.q.len()], field.stride, threads);
-        contacts.list(seams, image);
-        reach.reach(field, &planes, seams, image, contacts);
+        let touching = contacts.list(seams, &image[..field.q.len()], threads);
+        reach.reach(field, &planes, seams, image, touching);
     }
 }

@@ -5,7 +5,7 @@
 //! from the plane instead of on the value. Blocks ask only the planes of tiles nearby; the floor below a ball at the
 //! map's edge has none there.
 
-use super::contact::Contacts;
+use super::contact::Touching;
 use super::field::Field;
 use super::planes::{BENT, Planes};
 use super::seams::Seams;
@@ -32,22 +32,22 @@ impl Reach {
         planes: &Planes<'_>,
         seams: &Seams,
         image: &mut [u16],
-        contacts: &mut Contacts,
+        touching: &mut Touching,
     ) {
         reserve_to(&mut self.queue, field.width * field.height);
         let around = Around { field, planes };
         seams.each_open(|place| {
-            self.ask(&around, place, image, contacts);
+            self.ask(&around, place, image, touching);
             while let Some(at) = self.queue.pop() {
                 let place = [at as usize % field.stride, at as usize / field.stride];
-                around.neighbours(place).into_iter().for_each(|place| self.ask(&around, place, image, contacts));
+                around.neighbours(place).into_iter().for_each(|place| self.ask(&around, place, image, touching));
             }
         });
     }
 
     /// Gives a pixel without a region the nearest of the planes of its neighbours that it lies on, if any.
     #[inline(always)]
-    fn ask(&mut self, around: &Around<'_>, place: [usize; 2], image: &mut [u16], contacts: &mut Contacts) {
+    fn ask(&mut self, around: &Around<'_>, place: [usize; 2], image: &mut [u16], touching: &mut Touching) {
         let Around { field, planes } = *around;
         let at = place[1] * field.stride + place[0];
         if image[at] > 0 || !field.q[at].is_finite() {
@@ -70,7 +70,7 @@ impl Reach {
             image[at] = own;
             self.queue.push(at as u32);
             let labels = around.neighbours(place).map(|[x, y]| image[y * field.stride + x]);
-            labels.into_iter().for_each(|label| contacts.touch(own, label));
+            labels.into_iter().for_each(|label| touching.touch(own, label));
         }
     }
 }

@@ -7,6 +7,7 @@
 use crate::group::{Kernel, LinkRule, RowMasks};
 use crate::map::Validity;
 use crate::parallel::{Rows, in_parts};
+use std::ops::Range;
 
 /// Pixels of a word.
 const WORD: usize = u64::BITS as usize;
@@ -42,7 +43,7 @@ impl Seams {
     /// Calls `visit` with (u, v) of each pixel without a region that has a neighbour with one, row by row.
     pub(super) fn each_open(&self, mut visit: impl FnMut([usize; 2])) {
         let words = self.words;
-        for v in 0..self.like_left.len() / words {
+        for v in 0..self.rows() {
             let [above, here, below] = [v, v + 1, v + 2].map(|row| &self.labelled[row * words..][..words]);
             for word in 0..words {
                 let from_right = here.get(word + 1).map_or(0, |next| next << (WORD - 1));
@@ -52,11 +53,16 @@ impl Seams {
         }
     }
 
-    /// Calls `visit` with the labels of each two neighbours that have different ones.
-    pub(super) fn each(&self, image: &[u16], mut visit: impl FnMut(u16, u16)) {
+    /// Rows of the image.
+    pub(super) fn rows(&self) -> usize {
+        self.like_left.len() / self.words
+    }
+
+    /// Calls `visit` with the labels of each two neighbours of some rows, or one row above, that have different ones.
+    pub(super) fn each(&self, rows: Range<usize>, image: &[u16], mut visit: impl FnMut(u16, u16)) {
         let (words, stride) = (self.words, self.words * WORD);
-        let rows = self.like_left.chunks_exact(words).zip(self.like_up.chunks_exact(words));
-        for (v, (like_left, like_up)) in rows.enumerate() {
+        for v in rows {
+            let [like_left, like_up] = [&self.like_left, &self.like_up].map(|masks| &masks[v * words..][..words]);
             let [above, here] = [v, v + 1].map(|row| &self.labelled[row * words..][..words]);
             for word in 0..words {
                 let mut visit_all = |mask: u64, off: usize| {

@@ -6,8 +6,10 @@
 //! a tile is.
 
 use super::grid::{Grid, NONE, Place};
-use super::grow::Regions;
+use super::grow::{Region, Regions, in_bands};
+use super::tiles::Pyramid;
 use crate::group::reserve_to;
+use std::ops::Range;
 
 /// Variances by which the other plane has to explain a tile better, so that two pieces of one plane do not trade tiles
 /// for nothing: three deviations.
@@ -17,60 +19,106 @@ const FAR: f64 = 3.0;
 /// Tiles of a row that are looked at together; a row has a multiple of them.
 const ABREAST: usize = 8;
 
+/// A tile that goes from one region to another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Move {
+    place: Place,
+    from: u32,
+    to: u32,
+}
+
 impl Regions {
-    /// Lets the tiles beside other regions go over.
-    pub(super) fn settle(&mut self, grid: &mut Grid) {
-        reserve_to(&mut self.has_changed, grid.len());
-        self.has_changed.resize(self.all.len(), false);
-        for row in 0..grid.rows {
-            for first in (0..grid.columns).step_by(ABREAST) {
-                let mut rest = u64::from_le_bytes(find_beside(grid, row * grid.columns + first));
+    /// Lets the tiles beside other regions go over, on as many threads: band by band, and then along their edges.
+    pub(super) fn settle(&mut self, pyramid: &mut Pyramid, threads: usize) {
+        let Regions { all, bands, has_changed } = self;
+        reserve_to(has_changed, pyramid.grids[0].len());
+        has_changed.resize(all.len(), false);
+        let most = pyramid.grids[0].rows;
+        in_bands(bands, pyramid, threads, |band, pyramid, [region, ..]| {
+            let rows = band.rows_on(0);
+            let inner = rows.start + usize::from(rows.start > 0)..rows.end - usize::from(rows.end < most);
+            Settling { grid: &pyramid.grids[0], first: rows.start, region, all }.settle(inner, &mut band.moves);
+        });
+        let grid = &mut pyramid.grids[0];
+        let mut region = std::mem::take(&mut grid.region);
+        let mut whole = Settling { grid, first: 0, region: &mut region, all };
+        for after in 1..bands.len() {
+            let edge = bands[after].rows_on(0).start;
+            whole.settle(edge - 1..edge + 1, &mut bands[after].moves);
+        }
+        grid.region = region;
+        for &Move { place, from, to } in bands.iter().flat_map(|band| &band.moves) {
+            let cell = grid.cell(place);
+            all[from as usize].give(&cell);
+            all[to as usize].take(&cell);
+            [from, to].iter().for_each(|&id| has_changed[id as usize] = true);
+        }
+        let changed = all.iter_mut().zip(has_changed).filter(|(_, has_changed)| **has_changed);
+        changed.for_each(|(region, _)| region.refit());
+    }
+}
+
+/// Some rows of tiles, of which those within may go over.
+struct Settling<'a> {
+    grid: &'a Grid,
+    /// The first of the rows.
+    first: usize,
+    region: &'a mut [u32],
+    all: &'a [Region],
+}
+
+impl Settling<'_> {
+    /// Lets the tiles of some rows go over; those of the rows beside them are known.
+    fn settle(&mut self, rows: Range<usize>, moves: &mut Vec<Move>) {
+        let columns = self.grid.columns;
+        for row in rows {
+            for first in (0..columns).step_by(ABREAST) {
+                let beside = find_beside(self.region, columns, (row - self.first) * columns + first);
+                let mut rest = u64::from_le_bytes(beside);
                 while rest != 0 {
                     let column = first + rest.trailing_zeros() as usize / 8;
                     rest &= rest - 1;
-                    self.settle_tile(grid, Place::new(column, row));
+                    if let Some(step) = self.settle_tile(Place::new(column, row)) {
+                        moves.push(step);
+                    }
                 }
             }
         }
-        let changed = self.all.iter_mut().zip(&self.has_changed).filter(|(_, has_changed)| **has_changed);
-        changed.for_each(|(region, _)| region.refit());
     }
 
-    fn settle_tile(&mut self, grid: &mut Grid, place: Place) {
+    fn settle_tile(&mut self, place: Place) -> Option<Move> {
+        let (grid, all, region) = (self.grid, self.all, &mut *self.region);
+        let before = self.first * grid.columns;
         let at = grid.at(place);
-        let own = grid.region[at];
+        let own = region[at - before];
         let [u, v] = grid.middle(place);
         let far = FAR * FAR * f64::from(grid.variance[at]);
         let q = grid.q(at);
-        let is_near = |id: u32| id != NONE && id != own && (self.all[id as usize].at(u, v) - q).powi(2) <= far;
-        let beside = grid.neighbours(place).map(|beside| grid.region[grid.at(beside)]);
+        let is_near = |id: u32| id != NONE && id != own && (all[id as usize].at(u, v) - q).powi(2) <= far;
+        let beside = grid.neighbours(place).map(|beside| region[grid.at(beside) - before]);
         let mut others = beside.map(|id| if is_near(id) { id } else { NONE });
         (1..4).for_each(|i| others[i] = if others[..i].contains(&others[i]) { NONE } else { others[i] });
         if others == [NONE; 4] {
-            return;
+            return None;
         }
         let cell = grid.cell(place);
-        let about = |id: u32| cell.squares_about(self.all[id as usize].abc, self.all[id as usize].origin);
+        let about = |id: u32| cell.squares_about(all[id as usize].abc, all[id as usize].origin);
         let (mut best, mut least) = (own, about(own) - BETTER * cell.variance);
         for id in others.into_iter().filter(|&id| id != NONE) {
             let squares = about(id);
             (best, least) = if squares < least { (id, squares) } else { (best, least) };
         }
-        if best != own {
-            grid.region[at] = best;
-            self.all[own as usize].give(&cell);
-            self.all[best as usize].take(&cell);
-            [own, best].iter().for_each(|&id| self.has_changed[id as usize] = true);
-        }
+        region[at - before] = best;
+        (best != own).then_some(Move { place, from: own, to: best })
     }
 }
 
 /// For each tile from `at` on 1 if it has a region and one beside it another, else 0; may say so at the ends of a row.
 #[inline(always)]
-fn find_beside(grid: &Grid, at: usize) -> [u8; ABREAST] {
-    let part = |at: usize| grid.region.get(at..).and_then(|from| from.first_chunk::<ABREAST>());
+fn find_beside(region: &[u32], columns: usize, at: usize) -> [u8; ABREAST] {
+    let part = |at: usize| region.get(at..).and_then(|from| from.first_chunk::<ABREAST>());
     let own = part(at).expect("rows of whole parts");
-    let (above, below) = (part(at.wrapping_sub(grid.columns)).unwrap_or(own), part(at + grid.columns).unwrap_or(own));
+    let (above, below) = (part(at.wrapping_sub(columns)).unwrap_or(own), part(at + columns).unwrap_or(own));
     let (left, right) = (part(at.wrapping_sub(1)).unwrap_or(own), part(at + 1).unwrap_or(own));
     let mut beside = [0; ABREAST];
     for i in 0..ABREAST {

@@ -8,12 +8,28 @@ use super::field::Field;
 use super::grid::limit;
 use super::planes::{BENT, Planes};
 use crate::group::{Grouper, Groups, Run, reserve_to};
+use crate::parallel::in_parts;
+use std::ops::Range;
+
+/// Parts with nearly as many pixels that strays are shared out to.
+const PARTS: usize = 16;
 
 /// Joins what was cut off; reuses its memory.
 #[derive(Debug, Default)]
 pub(super) struct Strays {
+    /// Pixels of the map.
+    pixels: usize,
     /// Runs of small groups, a group's together.
     runs: Vec<Run>,
+    parts: Vec<Part>,
+    /// Groups that are one.
+    pairs: Vec<[u32; 2]>,
+}
+
+/// Some strays.
+#[derive(Debug, Default)]
+struct Part {
+    runs: Range<usize>,
     /// Labels and groups of the pixels beside a stray.
     beside: Vec<(u16, u32)>,
     /// The same labels, by how often they are there.
@@ -22,15 +38,82 @@ pub(super) struct Strays {
     pairs: Vec<[u32; 2]>,
 }
 
+/// What strays are held against.
+struct Around<'a> {
+    field: &'a Field,
+    image: &'a [u16],
+    planes: &'a Planes<'a>,
+    groups: &'a Groups,
+    min: u32,
+}
+
 impl Strays {
     /// Joins each group of at most `min` pixels that is less than half of its region to those of the region that it touches
-    /// most, if it lies on that one's plane by the test of tiles.
-    pub(super) fn join(&mut self, field: &Field, image: &[u16], planes: &Planes<'_>, min: u32, grouper: &mut Grouper) {
+    /// most, if it lies on that one's plane by the test of tiles. On as many threads.
+    pub(super) fn join(
+        &mut self,
+        field: &Field,
+        image: &[u16],
+        planes: &Planes<'_>,
+        min: u32,
+        grouper: &mut Grouper,
+        threads: usize,
+    ) {
         self.list(field, min, grouper.groups());
-        let Strays { runs, beside, often, pairs } = self;
-        let groups = grouper.groups();
+        self.share_out(min);
+        let Strays { runs, parts, pairs, .. } = self;
+        let around = Around { field, image, planes, groups: grouper.groups(), min };
+        let join = |parts: &mut [Part]| parts.iter_mut().for_each(|part| part.join(runs, &around));
+        in_parts(threads, &mut parts[..], join, |(), ()| ());
+        parts.iter().for_each(|part| pairs.extend(&part.pairs));
+        grouper.unite(pairs);
+    }
+
+    /// Shares the strays out.
+    fn share_out(&mut self, min: u32) {
+        let Strays { runs, parts, pixels, .. } = self;
+        let most = runs.iter().map(length).sum::<usize>().div_ceil(PARTS);
+        let mut rest = 0..runs.len();
+        parts.resize_with(PARTS, Part::default);
+        for part in parts {
+            let first = rest.start;
+            let mut room = most;
+            while room > 0 && !rest.is_empty() {
+                let group = runs[rest.start].group;
+                while !rest.is_empty() && runs[rest.start].group == group {
+                    room = room.saturating_sub(length(&runs[rest.start]));
+                    rest.start += 1;
+                }
+            }
+            part.runs = first..rest.start;
+            // A pixel has four neighbours.
+            let of_stray = 4 * (*pixels).min(min as usize);
+            reserve_to(&mut part.beside, of_stray);
+            reserve_to(&mut part.often, of_stray.min(BENT.into()));
+            reserve_to(&mut part.pairs, 4 * pixels.div_ceil(PARTS) + of_stray);
+        }
+    }
+
+    fn list(&mut self, field: &Field, min: u32, groups: &Groups) {
+        let Strays { pixels, runs, pairs, .. } = self;
+        *pixels = field.width * field.height;
+        reserve_to(runs, *pixels);
+        reserve_to(pairs, 4 * *pixels);
+        groups.each_run(|run| {
+            if groups.sizes()[run.group as usize] <= min {
+                runs.push(run);
+            }
+        });
+        runs.sort_unstable_by_key(|run| (run.group, run.v, run.u_first));
+    }
+}
+
+impl Part {
+    fn join(&mut self, runs: &[Run], around: &Around<'_>) {
+        let &Around { field, image, planes, groups, min } = around;
+        let Part { runs: range, beside, often, pairs } = self;
         let label = |run: &Run| image[run.v as usize * field.stride + run.u_first as usize];
-        for stray in runs.chunk_by(|a, b| a.group == b.group) {
+        for stray in runs[range.clone()].chunk_by(|a, b| a.group == b.group) {
             let own = label(&stray[0]);
             let pixels = f64::from(groups.sizes()[stray[0].group as usize]);
             if 2.0 * pixels >= planes.region(u32::from(own) - 1).sums.n {
@@ -50,22 +133,11 @@ impl Strays {
                 pairs.extend(there.map(|&(_, group)| [stray[0].group, group]));
             }
         }
-        grouper.unite(pairs);
     }
+}
 
-    fn list(&mut self, field: &Field, min: u32, groups: &Groups) {
-        let (pixels, Strays { runs, beside, often, pairs }) = (field.width * field.height, self);
-        reserve_to(runs, pixels);
-        reserve_to(beside, 4 * pixels);
-        reserve_to(often, usize::from(BENT));
-        reserve_to(pairs, 4 * pixels);
-        groups.each_run(|run| {
-            if groups.sizes()[run.group as usize] <= min {
-                runs.push(run);
-            }
-        });
-        runs.sort_unstable_by_key(|run| (run.group, run.v, run.u_first));
-    }
+fn length(run: &Run) -> usize {
+    (run.u_last - run.u_first) as usize + 1
 }
 
 /// Lists the labels and groups of the pixels around a run that have other ones than its own.
