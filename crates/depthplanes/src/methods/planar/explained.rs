@@ -10,7 +10,7 @@ use super::grow::Region;
 use super::merge::Pair;
 use super::planes::Planes;
 use super::tiles::SIDE;
-use crate::group::reserve_to;
+use crate::group::{reserve_to, vectorised};
 use crate::parallel::{Numbered, in_parts};
 
 /// A region goes if more than this share of its pixels lies on larger planes beside it.
@@ -64,8 +64,8 @@ impl Explainer {
         let find = |part: Numbered<'_, bool>| {
             for (id, is_explained) in (part.first..).zip(part.all) {
                 let others = &larger[id][..counts[id]];
-                *is_explained =
-                    !others.is_empty() && share_on(field, grid, planes, id as u32, others, &boxes[id]) > EXPLAINED;
+                let share = || share_on(field, grid, planes, id as u32, others, &boxes[id]);
+                *is_explained = !others.is_empty() && vectorised(share) > EXPLAINED;
             }
         };
         in_parts(threads, Numbered { first: 0, all: is_explained }, find, |(), ()| ());
@@ -103,6 +103,7 @@ fn is_near(own: &Region, larger: &Region) -> bool {
 }
 
 /// The share of a region's pixels that lies on other planes, of those that lie on its own.
+#[inline(always)]
 fn share_on(field: &Field, grid: &Grid, planes: &Planes<'_>, id: u32, others: &[u32], around: &CellBox) -> f64 {
     let [mut pixels, mut by_others] = [0; 2];
     for row in around.first[1]..=around.last[1] {

@@ -11,7 +11,7 @@ use super::grid::{Cell, Grid, NONE, Place, next_free};
 use super::settle::Move;
 use super::tiles::{LEVELS, Pyramid, SIDE, hand_down};
 use crate::fit::Moments;
-use crate::group::reserve_to;
+use crate::group::{reserve_to, vectorised};
 use crate::parallel::{Rows, in_parts};
 use std::array::from_fn;
 use std::mem::take;
@@ -155,7 +155,12 @@ impl Regions {
     pub(super) fn grow(&mut self, pyramid: &mut Pyramid, confidence: f64, threads: usize) {
         reserve_to(&mut self.all, pyramid.grids[0].len());
         self.cut(pyramid);
-        in_bands(&mut self.bands, pyramid, threads, |band, pyramid, regions| band.grow(pyramid, regions, confidence));
+        in_bands(&mut self.bands, pyramid, threads, |band, pyramid, regions| {
+            vectorised(
+                #[inline(always)]
+                || band.grow(pyramid, regions, confidence),
+            );
+        });
         self.unite(&mut pyramid.grids[0]);
     }
 
@@ -197,6 +202,7 @@ impl Band {
     }
 
     /// Grows its regions; `regions`: for each level and cell of its rows the region.
+    #[inline(always)]
     fn grow(&mut self, pyramid: &Pyramid, mut regions: [&mut [u32]; LEVELS], confidence: f64) {
         for level in (0..LEVELS).rev() {
             let (grid, rows) = (&pyramid.grids[level], self.rows_on(level));
@@ -276,6 +282,7 @@ struct Area<'a> {
 
 impl Area<'_> {
     /// Lets the regions that came down from coarser cells grow on.
+    #[inline(always)]
     fn grow_on(&mut self) {
         self.work.queue.clear();
         if self.all.is_empty() {
@@ -300,6 +307,7 @@ impl Area<'_> {
     }
 
     /// Starts regions from the flat cells that are left, the flattest first.
+    #[inline(always)]
     fn seed(&mut self) {
         let grid = self.grid;
         let least = fewest(grid);
@@ -329,6 +337,7 @@ impl Area<'_> {
     }
 
     /// Lets regions take in the neighbours of the cells in the queue.
+    #[inline(always)]
     fn spread(&mut self) {
         let mut next = 0;
         while let Some(&place) = self.work.queue.get(next) {

@@ -7,7 +7,7 @@ use super::grid::{Grid, NONE};
 use super::grow::{Region, Regions};
 use crate::error::{Error, Result};
 use crate::fit::Moments;
-use crate::group::reserve_to;
+use crate::group::{reserve_to, vectorised};
 use crate::parallel::{Numbered, in_parts};
 use crate::select::MAX_PLANES;
 use std::ops::Range;
@@ -111,7 +111,11 @@ impl Merger {
         parts.resize_with(grid.rows.div_ceil(ROWS), Part::default);
         let list = |parts: Numbered<'_, Part>| {
             for (number, part) in (parts.first..).zip(parts.all) {
-                part.list(grid, number * ROWS..((number + 1) * ROWS).min(grid.rows));
+                let rows = number * ROWS..((number + 1) * ROWS).min(grid.rows);
+                vectorised(
+                    #[inline(always)]
+                    || part.list(grid, rows),
+                );
             }
         };
         in_parts(threads, Numbered { first: 0, all: &mut parts[..] }, list, |(), ()| ());
@@ -181,6 +185,7 @@ impl Merger {
 
 impl Part {
     /// Lists the pairs that a tile of some rows makes with the next to its right or below.
+    #[inline(always)]
     fn list(&mut self, grid: &Grid, of: Range<usize>) {
         let Part { pairs, recent } = self;
         let Grid { columns, rows, region, .. } = grid;

@@ -8,7 +8,7 @@
 use super::grid::{Grid, NONE, Place};
 use super::grow::{Region, Regions, in_bands};
 use super::tiles::Pyramid;
-use crate::group::reserve_to;
+use crate::group::{reserve_to, vectorised};
 use std::ops::Range;
 
 /// Variances by which the other plane has to explain a tile better, so that two pieces of one plane do not trade tiles
@@ -37,7 +37,11 @@ impl Regions {
         in_bands(bands, pyramid, threads, |band, pyramid, [region, ..]| {
             let rows = band.rows_on(0);
             let inner = rows.start + usize::from(rows.start > 0)..rows.end - usize::from(rows.end < most);
-            Settling { grid: &pyramid.grids[0], first: rows.start, region, all }.settle(inner, &mut band.moves);
+            let mut own = Settling { grid: &pyramid.grids[0], first: rows.start, region, all };
+            vectorised(
+                #[inline(always)]
+                || own.settle(inner, &mut band.moves),
+            );
         });
         let grid = &mut pyramid.grids[0];
         let mut region = std::mem::take(&mut grid.region);
@@ -69,6 +73,7 @@ struct Settling<'a> {
 
 impl Settling<'_> {
     /// Lets the tiles of some rows go over; those of the rows beside them are known.
+    #[inline(always)]
     fn settle(&mut self, rows: Range<usize>, moves: &mut Vec<Move>) {
         let columns = self.grid.columns;
         for row in rows {
@@ -86,6 +91,7 @@ impl Settling<'_> {
         }
     }
 
+    #[inline(always)]
     fn settle_tile(&mut self, place: Place) -> Option<Move> {
         let (grid, all, region) = (self.grid, self.all, &mut *self.region);
         let before = self.first * grid.columns;
