@@ -33,9 +33,6 @@ pub(super) struct Pieces {
 #[derive(Debug, Default)]
 struct Part {
     first: usize,
-    /// For each pixel of a row, as bits, which of the four that are two steps off, below or to the right, have its label
-    /// where none between has.
-    apart: Vec<u8>,
     /// Groups that are one.
     pairs: Vec<[u32; 2]>,
 }
@@ -48,7 +45,14 @@ impl Pieces {
         parts.resize_with(field.height.div_ceil(ROWS), Part::default);
         parts.iter_mut().zip((0..).step_by(ROWS)).for_each(|(part, first)| part.first = first);
         let groups = grouper.groups();
-        let list = |parts: &mut [Part]| parts.iter_mut().for_each(|part| part.list(field, image, groups));
+        let list = |parts: &mut [Part]| {
+            for part in parts {
+                vectorised(
+                    #[inline(always)]
+                    || part.list(field, image, groups),
+                );
+            }
+        };
         in_parts(threads, &mut parts[..], list, |(), ()| ());
         reserve_to(pairs, image.len());
         parts.iter().for_each(|part| pairs.extend(&part.pairs));
@@ -57,36 +61,35 @@ impl Pieces {
 }
 
 impl Part {
+    #[inline(always)]
     fn list(&mut self, field: &Field, image: &[u16], groups: &Groups) {
         let Field { width, height, stride, ref q, .. } = *field;
         let is_missing = |[u, v]: [usize; 2]| q[v * stride + u].is_nan();
-        let Part { first, apart, pairs } = self;
+        let Part { first, pairs } = self;
         reserve_to(pairs, ROWS * stride);
-        apart.resize(stride, 0);
         for v in *first..(*first + ROWS).min(height) {
-            vectorised(
-                #[inline(always)]
-                || find_apart(image, v * stride, apart),
-            );
-            let eights = apart.as_chunks::<8>().0.iter().map(|eight| u64::from_le_bytes(*eight));
-            for (first, mut rest) in (0..).step_by(8).zip(eights) {
-                while rest != 0 {
-                    let shift = rest.trailing_zeros() & !7;
-                    let ways = (rest >> shift) as u8;
-                    rest &= !(0xff << shift);
-                    let u = first + shift as usize / 8;
-                    // Where each leads, and what lies between.
-                    let (right, below, left) = ([u + 1, v], [u, v + 1], [u.wrapping_sub(1), v]);
-                    let to = [
-                        ([u + 2, v], [right, right]),
-                        ([u, v + 2], [below, below]),
-                        ([u + 1, v + 1], [right, below]),
-                        ([u.wrapping_sub(1), v + 1], [left, below]),
-                    ];
-                    for (way, ([x, y], between)) in to.into_iter().enumerate() {
-                        let is_there = ways >> way & 1 > 0 && x < width && y < height;
-                        if is_there && between.into_iter().any(is_missing) {
-                            list(groups.at([u, v]), groups.at([x, y]), pairs);
+            for start in (0..stride).step_by(ABREAST) {
+                let Some(apart) = find_apart(image, v * stride + start, stride) else { continue };
+                for (first, eight) in (start..).step_by(8).zip(apart.as_chunks::<8>().0) {
+                    let mut rest = u64::from_le_bytes(*eight);
+                    while rest != 0 {
+                        let shift = rest.trailing_zeros() & !7;
+                        let ways = (rest >> shift) as u8;
+                        rest &= !(0xff << shift);
+                        let u = first + shift as usize / 8;
+                        // Where each leads, and what lies between.
+                        let (right, below, left) = ([u + 1, v], [u, v + 1], [u.wrapping_sub(1), v]);
+                        let to = [
+                            ([u + 2, v], [right, right]),
+                            ([u, v + 2], [below, below]),
+                            ([u + 1, v + 1], [right, below]),
+                            ([u.wrapping_sub(1), v + 1], [left, below]),
+                        ];
+                        for (way, ([x, y], between)) in to.into_iter().enumerate() {
+                            let is_there = ways >> way & 1 > 0 && x < width && y < height;
+                            if is_there && between.into_iter().any(is_missing) {
+                                list(groups.at([u, v]), groups.at([x, y]), pairs);
+                            }
                         }
                     }
                 }
@@ -103,40 +106,39 @@ fn list(a: u32, b: u32, pairs: &mut Vec<[u32; 2]>) {
     }
 }
 
-/// Fills `apart` for the row that begins at `row`; what it says at the ends of a row and of the image may be wrong.
+/// For each pixel from `at` on, as bits, which of the four that are two steps off, below or to the right, have its label
+/// where none between has; `None` where all have one label. What it says at the ends of a row and of the image may be wrong.
 #[inline(always)]
-fn find_apart(image: &[u16], row: usize, apart: &mut [u8]) {
-    let stride = apart.len();
+fn find_apart(image: &[u16], at: usize, stride: usize) -> Option<[u8; ABREAST]> {
     let part = |first: usize| image[first..].first_chunk::<ABREAST>().expect("pixels that follow the image");
-    for (apart, at) in apart.as_chunks_mut::<ABREAST>().0.iter_mut().zip((row..).step_by(ABREAST)) {
-        let (here, right, below) = (part(at), part(at + 1), part(at + stride));
-        let mut any = 0;
-        for i in 0..ABREAST {
-            any |= (here[i] ^ right[i]) | (here[i] ^ below[i]);
-        }
-        *apart = [0; ABREAST];
-        if any == 0 {
-            continue;
-        }
-        let (second, lower) = (part(at + 2), part(at + 2 * stride));
-        let (across, back) = (part(at + stride + 1), part(at + stride - 1));
-        let left = part(at.saturating_sub(1));
-        let (corner, foot) = (part(at + stride + 2), part(at + 2 * stride + 1));
-        for i in 0..ABREAST {
-            let own = here[i];
-            let is_plane = (own != 0) & (own != BENT);
-            let [by_right, by_below] = [right[i] != own, below[i] != own];
-            // Around a lone hole they are one group for sure.
-            let around = (below[i] == own) & (across[i] == own) & (corner[i] == own);
-            let beside = (right[i] == own) & (across[i] == own) & (foot[i] == own);
-            let to = [
-                by_right & (second[i] == own) & !around,
-                by_below & (lower[i] == own) & !beside,
-                by_right & by_below & (across[i] == own),
-                by_below & (left[i] != own) & (back[i] == own),
-            ];
-            let ways = u8::from(to[0]) | u8::from(to[1]) << 1 | u8::from(to[2]) << 2 | u8::from(to[3]) << 3;
-            apart[i] = if is_plane { ways } else { 0 };
-        }
+    let (here, right, below) = (part(at), part(at + 1), part(at + stride));
+    let mut any = 0;
+    for i in 0..ABREAST {
+        any |= (here[i] ^ right[i]) | (here[i] ^ below[i]);
     }
+    if any == 0 {
+        return None;
+    }
+    let (second, lower) = (part(at + 2), part(at + 2 * stride));
+    let (across, back) = (part(at + stride + 1), part(at + stride - 1));
+    let left = part(at.saturating_sub(1));
+    let (corner, foot) = (part(at + stride + 2), part(at + 2 * stride + 1));
+    let mut apart = [0; ABREAST];
+    for i in 0..ABREAST {
+        let own = here[i];
+        let is_plane = (own != 0) & (own != BENT);
+        let [by_right, by_below] = [right[i] != own, below[i] != own];
+        // Around a lone hole they are one group for sure.
+        let around = (below[i] == own) & (across[i] == own) & (corner[i] == own);
+        let beside = (right[i] == own) & (across[i] == own) & (foot[i] == own);
+        let to = [
+            by_right & (second[i] == own) & !around,
+            by_below & (lower[i] == own) & !beside,
+            by_right & by_below & (across[i] == own),
+            by_below & (left[i] != own) & (back[i] == own),
+        ];
+        let ways = u8::from(to[0]) | u8::from(to[1]) << 1 | u8::from(to[2]) << 2 | u8::from(to[3]) << 3;
+        apart[i] = if is_plane { ways } else { 0 };
+    }
+    Some(apart)
 }
