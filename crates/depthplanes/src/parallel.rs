@@ -29,7 +29,16 @@ pub(crate) fn in_parts<W: Rows, A: Send>(
 /// Does the work where several threads share what it hands to [`in_parts`], if there is more than one: threads that go to
 /// sleep between its stages take longer to wake than some stages take.
 pub(crate) fn on_threads<A: Send>(threads: usize, work: impl FnOnce() -> A + Send) -> A {
-    if threads > 1 { both(work, || ()).0 } else { work() }
+    side_by_side(threads, work, || ()).0
+}
+
+/// Does two things, side by side if there is more than one thread.
+pub(crate) fn side_by_side<A: Send, B: Send>(
+    threads: usize,
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if threads > 1 { both(a, b) } else { (a(), b()) }
 }
 
 fn split<W: Rows, A: Send>(

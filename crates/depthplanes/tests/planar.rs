@@ -257,3 +257,19 @@ fn the_line_of_a_crease_cuts_nothing_off_beyond_the_creases_end() {
     // Some 3 in a thousand of 8,064 lie further off than 3 deviations.
     assert!(others < 50, "{others} of the sheet's pixels");
 }
+
+#[test]
+fn planes_that_are_grown_over_in_bands_are_whole() {
+    // Two walls that meet in a corner, over five bands of half a million pixels, on one thread and on several.
+    let (width, height, sigma, mut random) = (1600, 1600, 0.25, Random::new(9));
+    let disparity = |at: usize| (100.0 + 0.02 * (at / width) as f64).min(60.0 + 0.04 * (at % width) as f64);
+    let map: Vec<f32> = (0..width * height).map(|at| (disparity(at) + sigma * random.gaussian()) as f32).collect();
+    for threads in [1, 3] {
+        let sensor = Sensor { measure: Measure::Disparity, ..Sensor::default() };
+        let mut detector = Detector::default().sensor(sensor).threads(threads);
+        let found = detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap();
+        assert_eq!(found.planes.len(), 2, "{threads} threads");
+        let on_planes: f64 = found.planes.iter().map(|plane| plane.share_of_valid).sum();
+        assert!(on_planes > 0.99, "{on_planes} of the pixels, {threads} threads");
+    }
+}

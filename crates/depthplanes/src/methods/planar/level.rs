@@ -18,9 +18,10 @@ pub(super) struct Level {
 impl Level {
     /// The noise that explains the scatter of a map, rounding included.
     pub(super) fn estimate(&mut self, grid: &Grid, space: Space) -> SensorNoise {
-        self.blocks.prepare(grid.len());
+        self.blocks.prepare(grid.len().div_ceil(Slants::stride(grid.len())));
         let full = (grid.side * grid.side) as f64;
-        for at in 0..grid.len() {
+        // As many as the ray is estimated from tell the noise as well.
+        for at in (0..grid.len()).step_by(Slants::stride(grid.len())) {
             let n = f64::from(grid.pixels(at));
             if n >= VALID * full {
                 self.blocks.push(grid.q(at), f64::from(grid.squares(at)) / (n - 3.0), 0.0);

@@ -41,6 +41,7 @@ use crate::explanation::Explanation;
 use crate::group::Grouper;
 use crate::map::{AnyView, DepthView, Pixel};
 use crate::noise::{NoiseModel, Space};
+use crate::parallel::side_by_side;
 use crate::with_view;
 use bent::Bent;
 use contact::Contacts;
@@ -296,9 +297,12 @@ impl Runner {
         facets.find_boxes(&pyramid.grids[0], regions);
         pyramid.hand_up();
         let planes = params.planes(&regions.all, noise, false);
-        explainer.find(field, &pyramid.grids[0], &planes, &merger.pairs, &facets.boxes, threads);
-        facets.bows.measure(pyramid, &regions.all);
-        let Facets { bows, boxes, .. } = facets;
+        let (Facets { bows, boxes, .. }, tiles) = (&mut *facets, &pyramid.grids[0]);
+        side_by_side(
+            threads,
+            || explainer.find(field, tiles, &planes, &merger.pairs, boxes, threads),
+            || bows.measure(pyramid, &regions.all),
+        );
         let confidence = params.confidence;
         if relief.relieve(&mut pyramid.grids[0], regions, explainer, bows, boxes, confidence) {
             pyramid.hand_up();

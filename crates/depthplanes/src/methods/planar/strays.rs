@@ -19,8 +19,10 @@ const PARTS: usize = 16;
 pub(super) struct Strays {
     /// Pixels of the map.
     pixels: usize,
-    /// Runs of small groups, a group's together.
+    /// Runs of small groups in raster order.
     runs: Vec<Run>,
+    /// The same by group: the group, and behind it the run.
+    by_group: Vec<u64>,
     parts: Vec<Part>,
     /// Groups that are one.
     pairs: Vec<[u32; 2]>,
@@ -61,9 +63,9 @@ impl Strays {
     ) {
         self.list(field, min, grouper.groups());
         self.share_out(min);
-        let Strays { runs, parts, pairs, .. } = self;
+        let Strays { runs, by_group, parts, pairs, .. } = self;
         let around = Around { field, image, planes, groups: grouper.groups(), min };
-        let join = |parts: &mut [Part]| parts.iter_mut().for_each(|part| part.join(runs, &around));
+        let join = |parts: &mut [Part]| parts.iter_mut().for_each(|part| part.join(runs, by_group, &around));
         in_parts(threads, &mut parts[..], join, |(), ()| ());
         parts.iter().for_each(|part| pairs.extend(&part.pairs));
         grouper.unite(pairs);
@@ -71,7 +73,7 @@ impl Strays {
 
     /// Shares the strays out.
     fn share_out(&mut self, min: u32) {
-        let Strays { runs, parts, pixels, .. } = self;
+        let Strays { runs, by_group, parts, pixels, .. } = self;
         let most = runs.iter().map(length).sum::<usize>().div_ceil(PARTS);
         let mut rest = 0..runs.len();
         parts.resize_with(PARTS, Part::default);
@@ -79,9 +81,9 @@ impl Strays {
             let first = rest.start;
             let mut room = most;
             while room > 0 && !rest.is_empty() {
-                let group = runs[rest.start].group;
-                while !rest.is_empty() && runs[rest.start].group == group {
-                    room = room.saturating_sub(length(&runs[rest.start]));
+                let stray = group(by_group[rest.start]);
+                while !rest.is_empty() && group(by_group[rest.start]) == stray {
+                    room = room.saturating_sub(length(of(runs, by_group[rest.start])));
                     rest.start += 1;
                 }
             }
@@ -95,45 +97,58 @@ impl Strays {
     }
 
     fn list(&mut self, field: &Field, min: u32, groups: &Groups) {
-        let Strays { pixels, runs, pairs, .. } = self;
+        let Strays { pixels, runs, by_group, pairs, .. } = self;
         *pixels = field.width * field.height;
         reserve_to(runs, *pixels);
+        reserve_to(by_group, *pixels);
         reserve_to(pairs, 4 * *pixels);
         groups.each_run(|run| {
             if groups.sizes()[run.group as usize] <= min {
+                by_group.push(u64::from(run.group) << 32 | runs.len() as u64);
                 runs.push(run);
             }
         });
-        runs.sort_unstable_by_key(|run| (run.group, run.v, run.u_first));
+        by_group.sort_unstable();
     }
 }
 
 impl Part {
-    fn join(&mut self, runs: &[Run], around: &Around<'_>) {
+    fn join(&mut self, runs: &[Run], by_group: &[u64], around: &Around<'_>) {
         let &Around { field, image, planes, groups, min } = around;
         let Part { runs: range, beside, often, pairs } = self;
         let label = |run: &Run| image[run.v as usize * field.stride + run.u_first as usize];
-        for stray in runs[range.clone()].chunk_by(|a, b| a.group == b.group) {
-            let own = label(&stray[0]);
-            let pixels = f64::from(groups.sizes()[stray[0].group as usize]);
+        for stray in by_group[range.clone()].chunk_by(|a, b| group(*a) == group(*b)) {
+            let (stray_group, own) = (group(stray[0]), label(of(runs, stray[0])));
+            let pixels = f64::from(groups.sizes()[stray_group as usize]);
             if 2.0 * pixels >= planes.region(u32::from(own) - 1).sums.n {
                 continue;
             }
             beside.clear();
-            stray.iter().for_each(|run| list_beside(field, image, own, run, groups, beside));
+            stray.iter().for_each(|&key| list_beside(field, image, own, of(runs, key), groups, beside));
             // Of two strays each may suit the other's plane.
             beside.retain(|&(_, group)| groups.sizes()[group as usize] > min);
             beside.sort_unstable();
             often.clear();
             often.extend(beside.chunk_by(|a, b| a.0 == b.0).map(|same| (same.len(), same[0].0)));
             often.sort_unstable_by(|a, b| b.cmp(a));
-            let suits = |&&(_, label): &&(usize, u16)| lies_on(field, planes, label, stray);
+            let suits =
+                |&&(_, label): &&(usize, u16)| lies_on(field, planes, label, stray.iter().map(|&key| of(runs, key)));
             if let Some(&(_, label)) = often.iter().find(suits) {
                 let there = beside.iter().filter(|(other, _)| *other == label);
-                pairs.extend(there.map(|&(_, group)| [stray[0].group, group]));
+                pairs.extend(there.map(|&(_, group)| [stray_group, group]));
             }
         }
     }
+}
+
+/// The group of a key of [`Strays::by_group`].
+fn group(key: u64) -> u32 {
+    (key >> 32) as u32
+}
+
+/// Its run.
+fn of(runs: &[Run], key: u64) -> &Run {
+    &runs[key as u32 as usize]
 }
 
 fn length(run: &Run) -> usize {
@@ -166,7 +181,7 @@ fn list_beside(field: &Field, image: &[u16], own: u16, run: &Run, groups: &Group
 }
 
 /// Whether the pixels of some runs lie on a region's plane.
-fn lies_on(field: &Field, planes: &Planes<'_>, label: u16, runs: &[Run]) -> bool {
+fn lies_on<'a>(field: &Field, planes: &Planes<'_>, label: u16, runs: impl Iterator<Item = &'a Run>) -> bool {
     let region = planes.region(u32::from(label) - 1);
     let [mut n, mut squares] = [0.0; 2];
     for run in runs {
