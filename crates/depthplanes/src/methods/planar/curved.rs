@@ -16,6 +16,7 @@ use super::turns::Border;
 use crate::group::reserve_to;
 use crate::methods::rays::Rays;
 use crate::noise::NoiseModel;
+use crate::parallel::{Numbered, in_parts};
 
 /// Fewest cells that a quadratic, six numbers, is fitted to.
 const ENOUGH: f64 = 12.0;
@@ -113,7 +114,7 @@ impl Facets {
     }
 
     /// Marks the regions that are facets of a curved surface. Strips across a crease (`is_strip`) are no facets, and say
-    /// nothing of others: through a strip and a narrow plane beside it there often is a quadratic.
+    /// nothing of others: through a strip and a narrow plane beside it there often is a quadratic. On as many threads.
     pub(super) fn mark(
         &mut self,
         pyramid: &Pyramid,
@@ -122,6 +123,7 @@ impl Facets {
         is_strip: &[bool],
         noise: &NoiseModel,
         rays: &Rays,
+        threads: usize,
     ) {
         let cells = pyramid.grids[0].len();
         reserve_to(&mut self.signs, cells);
@@ -145,17 +147,18 @@ impl Facets {
                 }
             }
         }
-        for id in (0..regions.all.len()).filter(|&id| regions.all[id].sums.n < SMALL) {
-            if signs[id].is_none() && !is_strip[id] && scene.surroundings(id as u32).bends() {
-                signs[id] = Some(Sign::Surroundings);
+        let look_around = |part: Numbered<'_, Option<Sign>>| {
+            for (id, sign) in (part.first..).zip(part.all).filter(|(id, sign)| sign.is_none() && !is_strip[*id]) {
+                let pixels = scene.all[id].sums.n;
+                let border = Border { grid: &pyramid.grids[0], all: scene.all, rays, id: id as u32 };
+                if pixels < SMALL && scene.surroundings(id as u32).bends() {
+                    *sign = Some(Sign::Surroundings);
+                } else if pixels < LARGE && border.turns(&boxes[id]) {
+                    *sign = Some(Sign::Turns);
+                }
             }
-        }
-        for id in (0..regions.all.len()).filter(|&id| regions.all[id].sums.n < LARGE) {
-            let border = Border { grid: &pyramid.grids[0], all: &regions.all, rays, id: id as u32 };
-            if signs[id].is_none() && !is_strip[id] && border.turns(&boxes[id]) {
-                signs[id] = Some(Sign::Turns);
-            }
-        }
+        };
+        in_parts(threads, Numbered { first: 0, all: &mut signs[..] }, look_around, |(), ()| ());
         while scene.spread(pairs, signs) {}
         regions.all.iter_mut().zip(signs).for_each(|(region, sign)| region.is_curved |= sign.is_some());
     }

@@ -78,7 +78,7 @@ impl Merger {
         reserve_to(&mut self.has_changed, grid.len());
         self.into.extend(0..regions.all.len() as u32);
         self.list_pairs(grid, threads);
-        while self.merge_best(&mut regions.all) {}
+        while self.merge_best(&mut regions.all, threads) {}
     }
 
     /// Leaves out regions of fewer than `least` pixels, and those that became part of another.
@@ -124,12 +124,15 @@ impl Merger {
     }
 
     /// Merges the pairs that cost least, each region once; whether there were any.
-    fn merge_best(&mut self, all: &mut [Region]) -> bool {
+    fn merge_best(&mut self, all: &mut [Region], threads: usize) -> bool {
         let Merger { pairs, into, has_changed, order, .. } = self;
-        for pair in pairs.iter_mut().filter(|pair| pair.cost.is_nan()) {
-            let [a, b] = pair.ids.map(|id| &all[id as usize]);
-            pair.cost = bend(a, b);
-        }
+        let bend_all = |pairs: &mut [Pair]| {
+            for pair in pairs.iter_mut().filter(|pair| pair.cost.is_nan()) {
+                let [a, b] = pair.ids.map(|id| &all[id as usize]);
+                pair.cost = bend(a, b);
+            }
+        };
+        in_parts(threads, &mut pairs[..], bend_all, |(), ()| ());
         order.clear();
         order.extend((0..pairs.len() as u32).filter(|&at| pairs[at as usize].cost <= BEND));
         if order.is_empty() {

@@ -308,7 +308,7 @@ impl Runner {
             pyramid.hand_up();
             bows.measure(pyramid, &regions.all);
         }
-        facets.mark(pyramid, regions, &merger.pairs, &explainer.is_explained, noise, rays);
+        facets.mark(pyramid, regions, &merger.pairs, &explainer.is_explained, noise, rays, threads);
         watch(Moment::Judged, self, noise);
         let Runner { pyramid, regions, merger, explainer, .. } = self;
         let mut explained = explainer.is_explained.iter();
