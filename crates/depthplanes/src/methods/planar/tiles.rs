@@ -210,7 +210,11 @@ fn sum_cells(parts: &GridRows<'_>, row: usize, side: usize, grid: &mut GridRows<
 #[inline(always)]
 fn tiles(rows: [&[f32; LANES * SIDE]; SIDE]) -> Sums<Lanes> {
     // Where all pixels are valid, half of the sums are known.
-    let is_whole = rows.iter().fold(true, |all, row| row.iter().fold(all, |all, q| all & q.is_finite()));
+    let mut sums = [[0.0; LANES]; SIDE];
+    for (sums, row) in sums.iter_mut().zip(rows) {
+        row.as_chunks::<LANES>().0.iter().for_each(|part| (0..LANES).for_each(|lane| sums[lane] += part[lane]));
+    }
+    let is_whole = (0..LANES).fold(true, |all, lane| all & sums.map(|sums| sums[lane]).iter().sum::<f32>().is_finite());
     if is_whole { tiles_of::<true>(rows) } else { tiles_of::<false>(rows) }
 }
 
