@@ -76,7 +76,7 @@ impl Contacts {
     }
 
     /// Joins the listed regions in the image, and their sums.
-    pub(super) fn join(&mut self, all: &mut [Region], image: &mut [u16]) {
+    pub(super) fn join(&mut self, all: &mut [Region], image: &mut [u16], threads: usize) {
         let Contacts { parts, reached, pairs, into } = self;
         reserve_to(pairs, 8 * image.len());
         parts.iter().chain([&*reached]).for_each(|part| pairs.extend(&part.pairs));
@@ -101,10 +101,14 @@ impl Contacts {
         }
         if any {
             (0..into.len()).for_each(|label| into[label] = root(into, label as u16));
-            vectorised(
-                #[inline(always)]
-                || relabel(image, into),
-            );
+            let relabel = |groups: &mut [[u16; ABREAST]]| {
+                vectorised(
+                    #[inline(always)]
+                    || relabel(groups, into),
+                );
+            };
+            // An image has whole groups.
+            in_parts(threads, image.as_chunks_mut().0, relabel, |(), ()| ());
         }
     }
 
@@ -124,9 +128,9 @@ fn root(into: &[u16], mut label: u16) -> u16 {
 
 /// Gives every pixel the label that its own has become; [`BENT`] stays.
 #[inline(always)]
-fn relabel(image: &mut [u16], into: &[u16]) {
+fn relabel(groups: &mut [[u16; ABREAST]], into: &[u16]) {
     let now = |label: u16| into.get(usize::from(label)).map_or(label, |&into| into);
-    for group in image.as_chunks_mut::<ABREAST>().0 {
+    for group in groups {
         // Most groups are of one region.
         let first = group[0];
         if group.iter().fold(true, |all, &label| all & (label == first)) {

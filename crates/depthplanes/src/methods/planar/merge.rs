@@ -247,7 +247,7 @@ fn is_alike(here: &[u32], below: &[u32], first: usize) -> bool {
 
 /// Makes one pair of those that are the same.
 fn unite(pairs: &mut Vec<Pair>) {
-    pairs.sort_unstable_by_key(|pair| pair.ids);
+    pairs.sort_unstable_by_key(|&Pair { ids: [a, b], .. }| u64::from(a) << 32 | u64::from(b));
     pairs.dedup_by(|next, pair| {
         let same = next.ids == pair.ids;
         if same {

@@ -238,7 +238,7 @@ impl Runner {
         self.assign(&noise, false, job.threads);
         self.reach(&noise, job.threads);
         watch(Moment::Assigned, self, &noise);
-        self.contacts.join(&mut self.regions.all, &mut self.image);
+        self.contacts.join(&mut self.regions.all, &mut self.image, job.threads);
         job.done("assign");
         let Runner { params, field, regions, image, finisher, pieces, strays, .. } = self;
         let ids = planes::of_image(image, field)?;

@@ -17,7 +17,7 @@ const BETTER: f64 = 9.0;
 /// Standard deviations of a pixel between a plane and the middle of a tile, from which on it is not asked.
 const FAR: f64 = 3.0;
 /// Tiles of a row that are looked at together; a row has a multiple of them.
-const ABREAST: usize = 8;
+const ABREAST: usize = 16;
 
 /// A tile that goes from one region to another.
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +79,7 @@ impl Settling<'_> {
         for row in rows {
             for first in (0..columns).step_by(ABREAST) {
                 let beside = find_beside(self.region, columns, (row - self.first) * columns + first);
-                let mut rest = u64::from_le_bytes(beside);
+                let mut rest = u128::from_le_bytes(beside);
                 while rest != 0 {
                     let column = first + rest.trailing_zeros() as usize / 8;
                     rest &= rest - 1;
