@@ -197,23 +197,24 @@ impl Near {
     fn new(tiles: &Grid, column: usize, row: usize) -> Self {
         let mut near = Near { ids: [NONE; MOST], count: 0 };
         let first = (2 * column).saturating_sub(2).min(tiles.columns - AROUND);
-        let mut left = [[NONE; AROUND]; 6];
+        // Regions are fewer than labels; as short numbers they are compared twice as many at a time.
+        let mut left = [[u16::MAX; AROUND]; 6];
         for (y, left) in left.iter_mut().enumerate() {
             let y = (2 * row + y).saturating_sub(2).min(tiles.rows - 1);
             let ids = tiles.region[y * tiles.columns + first..].first_chunk::<AROUND>().expect("so many tiles");
             for x in 0..AROUND {
                 let is_near = (first + x + 2 >= 2 * column) & (first + x <= 2 * column + 3);
-                left[x] = if is_near { ids[x] } else { NONE };
+                left[x] = if is_near { ids[x] as u16 } else { u16::MAX };
             }
         }
         while near.count < MOST {
-            let least = left.as_flattened().iter().fold(NONE, |least, &id| least.min(id));
-            if least == NONE {
+            let least = left.as_flattened().iter().fold(u16::MAX, |least, &id| least.min(id));
+            if least == u16::MAX {
                 break;
             }
-            near.ids[near.count] = least;
+            near.ids[near.count] = least.into();
             near.count += 1;
-            left.as_flattened_mut().iter_mut().for_each(|id| *id = if *id == least { NONE } else { *id });
+            left.as_flattened_mut().iter_mut().for_each(|id| *id = if *id == least { u16::MAX } else { *id });
         }
         near
     }
