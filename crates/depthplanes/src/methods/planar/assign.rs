@@ -199,12 +199,16 @@ impl Near {
         let first = (2 * column).saturating_sub(2).min(tiles.columns - AROUND);
         // Regions are fewer than labels; as short numbers they are compared twice as many at a time.
         let mut left = [[u16::MAX; AROUND]; 6];
+        // All bits of those that do not count.
+        let far: [u16; AROUND] = std::array::from_fn(|x| {
+            let is_near = (first + x + 2 >= 2 * column) & (first + x <= 2 * column + 3);
+            if is_near { 0 } else { u16::MAX }
+        });
         for (y, left) in left.iter_mut().enumerate() {
             let y = (2 * row + y).saturating_sub(2).min(tiles.rows - 1);
             let ids = tiles.region[y * tiles.columns + first..].first_chunk::<AROUND>().expect("so many tiles");
             for x in 0..AROUND {
-                let is_near = (first + x + 2 >= 2 * column) & (first + x <= 2 * column + 3);
-                left[x] = if is_near { ids[x] as u16 } else { u16::MAX };
+                left[x] = ids[x] as u16 | far[x];
             }
         }
         while near.count < MOST {
