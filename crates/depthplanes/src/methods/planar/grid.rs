@@ -241,27 +241,34 @@ pub(super) fn next_free(row: &[u32], first: usize) -> Option<usize> {
     Some(passed + row[passed..].iter().position(|&id| id == NONE)?)
 }
 
+/// Cells whose regions are compared together.
+const ABREAST: usize = 16;
+
 /// Calls `visit` for each run of a row's cells that have one region: the region, the columns.
+#[inline(always)]
 pub(super) fn each_run(row: &[u32], first: usize, mut visit: impl FnMut(u32, Range<usize>)) {
     let mut start = 0;
-    while start < row.len() {
-        let id = row[start];
-        let end = run_end(row, start);
-        if id != NONE {
-            visit(id, first + start..first + end);
+    let mut end_at = |end: usize| {
+        if row[start] != NONE {
+            visit(row[start], first + start..first + end);
         }
         start = end;
+    };
+    let Some(last) = row.len().checked_sub(1) else { return };
+    let (own, next) = (row[..last].as_chunks::<ABREAST>(), row[1..].as_chunks::<ABREAST>());
+    for (at, (own, next)) in (1..).step_by(ABREAST).zip(own.0.iter().zip(next.0)) {
+        let mut rest = u128::from_le_bytes(std::array::from_fn(|i| u8::from(own[i] != next[i])));
+        while rest != 0 {
+            end_at(at + rest.trailing_zeros() as usize / 8);
+            rest &= rest - 1;
+        }
     }
-}
-
-/// Where the run that begins at `start` ends.
-#[inline(always)]
-fn run_end(row: &[u32], start: usize) -> usize {
-    let id = row[start];
-    let alike = |cells: &[u32; 8]| cells.iter().fold(true, |all, &other| all & (other == id));
-    let (eights, _) = row[start..].as_chunks::<8>();
-    let passed = start + 8 * eights.iter().position(|cells| !alike(cells)).unwrap_or(eights.len());
-    passed + row[passed..].iter().position(|&other| other != id).unwrap_or(row.len() - passed)
+    for (at, (own, next)) in (last - own.1.len() + 1..).zip(own.1.iter().zip(next.1)) {
+        if own != next {
+            end_at(at);
+        }
+    }
+    end_at(row.len());
 }
 
 /// Where a cell lies in its grid.
@@ -323,5 +330,34 @@ impl<'a> Rows for GridRows<'a> {
         };
         self.rows -= rows;
         (first, self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    #[test]
+    fn runs_of_a_row_are_what_a_look_at_each_cell_finds() {
+        let mut random = Random::new(7);
+        for length in 0..80 {
+            let share = random.uniform();
+            let mut id = 0;
+            let mut next = |_| {
+                if random.uniform() < share {
+                    id = [NONE, 1, 2, 3][(random.uniform() * 4.0) as usize];
+                }
+                id
+            };
+            let row: Vec<u32> = (0..length).map(&mut next).collect();
+            let (mut cells, mut runs) = (vec![NONE; length], 0);
+            each_run(&row, 5, |id, columns| {
+                runs += 1;
+                columns.for_each(|column| cells[column - 5] = id);
+            });
+            let begins = (0..length).filter(|&at| row[at] != NONE && (at == 0 || row[at - 1] != row[at]));
+            assert_eq!((cells, runs), (row.clone(), begins.count()), "{row:?}");
+        }
     }
 }
