@@ -96,6 +96,13 @@ pub(super) enum Sign {
     Continues,
 }
 
+/// What is known of the sensor.
+#[derive(Clone, Copy)]
+pub(super) struct Optics<'a> {
+    pub(super) noise: &'a NoiseModel,
+    pub(super) rays: &'a Rays,
+}
+
 /// What is known of the regions and the map they lie in.
 struct Scene<'a> {
     pyramid: &'a Pyramid,
@@ -121,8 +128,7 @@ impl Facets {
         regions: &mut Regions,
         pairs: &[Pair],
         is_strip: &[bool],
-        noise: &NoiseModel,
-        rays: &Rays,
+        Optics { noise, rays }: Optics<'_>,
         threads: usize,
     ) {
         let cells = pyramid.grids[0].len();

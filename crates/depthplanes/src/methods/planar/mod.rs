@@ -45,7 +45,7 @@ use crate::parallel::side_by_side;
 use crate::with_view;
 use bent::Bent;
 use contact::Contacts;
-use curved::Facets;
+use curved::{Facets, Optics};
 use explained::Explainer;
 use field::Field;
 use grow::{Region, Regions};
@@ -233,7 +233,8 @@ impl Runner {
         job.done("tiles");
         self.grow(&noise, job.threads, watch)?;
         job.done("grow");
-        self.judge(&noise, &Rays::of(&job.sensor, map.width(), map.height()), job.threads, watch);
+        let rays = &Rays::of(&job.sensor, map.width(), map.height());
+        self.judge(Optics { noise: &noise, rays }, job.threads, watch);
         job.done("judge");
         self.assign(&noise, false, job.threads);
         self.reach(&noise, job.threads);
@@ -292,7 +293,8 @@ impl Runner {
     }
 
     /// Which regions are no surface, and which of the others are curved.
-    fn judge(&mut self, noise: &NoiseModel, rays: &Rays, threads: usize, watch: &mut Watch<'_>) {
+    fn judge(&mut self, optics: Optics<'_>, threads: usize, watch: &mut Watch<'_>) {
+        let noise = optics.noise;
         let Runner { params, field, pyramid, regions, merger, facets, explainer, relief, .. } = self;
         facets.find_boxes(&pyramid.grids[0], regions);
         pyramid.hand_up();
@@ -308,7 +310,7 @@ impl Runner {
             pyramid.hand_up();
             bows.measure(pyramid, &regions.all);
         }
-        facets.mark(pyramid, regions, &merger.pairs, &explainer.is_explained, noise, rays, threads);
+        facets.mark(pyramid, regions, &merger.pairs, &explainer.is_explained, optics, threads);
         watch(Moment::Judged, self, noise);
         let Runner { pyramid, regions, merger, explainer, .. } = self;
         let mut explained = explainer.is_explained.iter();
