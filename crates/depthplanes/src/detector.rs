@@ -89,6 +89,7 @@ impl Detector {
     }
 
     /// Threads for large maps, 1 and up (0 counts as 1). The answer is the same for any number.
+    /// They are those of rayon's pool, where the whole of a frame is then worked on.
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = threads.max(1);
         self
