@@ -38,8 +38,8 @@ pub(super) struct Touching {
 }
 
 impl Touching {
-    fn prepare(&mut self, pixels: usize) {
-        reserve_to(&mut self.pairs, 4 * pixels);
+    fn prepare(&mut self, most: usize) {
+        reserve_to(&mut self.pairs, most);
         self.recent.clear();
         self.recent.resize(RECENT, [0; 2]);
     }
@@ -66,19 +66,20 @@ impl Contacts {
         let list = |parts: Numbered<'_, Touching>| {
             for (number, part) in (parts.first..).zip(parts.all) {
                 let rows = number * ROWS..((number + 1) * ROWS).min(rows);
-                part.prepare(rows.len() * image.len() / seams.rows());
+                // A pixel makes two pairs, with its left and its upper neighbour.
+                part.prepare(2 * rows.len() * image.len() / seams.rows());
                 seams.each(rows, image, |a, b| part.touch(a, b));
             }
         };
         in_parts(threads, Numbered { first: 0, all: &mut self.parts }, list, |(), ()| ());
-        self.reached.prepare(image.len());
+        self.reached.prepare(4 * image.len());
         &mut self.reached
     }
 
     /// Joins the listed regions in the image, and their sums.
     pub(super) fn join(&mut self, all: &mut [Region], image: &mut [u16], threads: usize) {
         let Contacts { parts, reached, pairs, into } = self;
-        reserve_to(pairs, 8 * image.len());
+        reserve_to(pairs, 6 * image.len());
         parts.iter().chain([&*reached]).for_each(|part| pairs.extend(&part.pairs));
         reserve_to(into, image.len());
         into.extend(0..=all.len() as u16);

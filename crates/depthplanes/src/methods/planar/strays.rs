@@ -11,7 +11,7 @@ use crate::group::{Grouper, Groups, Run, reserve_to};
 use crate::parallel::in_parts;
 use std::ops::Range;
 
-/// Parts with nearly as many pixels that strays are shared out to.
+/// Parts with nearly as many pixels each that strays are shared out to.
 const PARTS: usize = 16;
 
 /// Joins what was cut off; reuses its memory.
@@ -71,12 +71,14 @@ impl Strays {
         grouper.unite(pairs);
     }
 
-    /// Shares the strays out.
+    /// Shares the strays out; where a single one may be large, they are all one part, which takes less memory.
     fn share_out(&mut self, min: u32) {
         let Strays { runs, by_group, parts, pixels, .. } = self;
-        let most = runs.iter().map(length).sum::<usize>().div_ceil(PARTS);
+        let largest = (*pixels).min(min as usize);
+        let count = if largest > *pixels / PARTS { 1 } else { PARTS };
+        let most = runs.iter().map(length).sum::<usize>().div_ceil(count);
         let mut rest = 0..runs.len();
-        parts.resize_with(PARTS, Part::default);
+        parts.resize_with(count, Part::default);
         for part in parts {
             let first = rest.start;
             let mut room = most;
@@ -89,10 +91,9 @@ impl Strays {
             }
             part.runs = first..rest.start;
             // A pixel has four neighbours.
-            let of_stray = 4 * (*pixels).min(min as usize);
-            reserve_to(&mut part.beside, of_stray);
-            reserve_to(&mut part.often, of_stray.min(BENT.into()));
-            reserve_to(&mut part.pairs, 4 * pixels.div_ceil(PARTS) + of_stray);
+            reserve_to(&mut part.beside, 4 * largest);
+            reserve_to(&mut part.often, (4 * largest).min(BENT.into()));
+            reserve_to(&mut part.pairs, 4 * (pixels.div_ceil(count) + largest));
         }
     }
 
