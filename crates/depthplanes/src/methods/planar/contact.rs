@@ -23,8 +23,6 @@ const ROWS: usize = 64;
 pub(super) struct Contacts {
     /// What touches in some rows each.
     parts: Vec<Touching>,
-    /// What touches where planes reached on.
-    reached: Touching,
     pairs: Vec<[u16; 2]>,
     /// For each label the one that it becomes.
     into: Vec<u16>,
@@ -38,7 +36,8 @@ pub(super) struct Touching {
 }
 
 impl Touching {
-    fn prepare(&mut self, most: usize) {
+    /// Makes room for so many pairs.
+    pub(super) fn prepare(&mut self, most: usize) {
         reserve_to(&mut self.pairs, most);
         self.recent.clear();
         self.recent.resize(RECENT, [0; 2]);
@@ -59,8 +58,8 @@ impl Touching {
 }
 
 impl Contacts {
-    /// Lists the regions that touch in an image, on as many threads; where planes reach on is still to be added.
-    pub(super) fn list(&mut self, seams: &Seams, image: &[u16], threads: usize) -> &mut Touching {
+    /// Lists the regions that touch in an image, on as many threads.
+    pub(super) fn list(&mut self, seams: &Seams, image: &[u16], threads: usize) {
         let rows = seams.rows();
         self.parts.resize_with(rows.div_ceil(ROWS), Touching::default);
         let list = |parts: Numbered<'_, Touching>| {
@@ -72,15 +71,20 @@ impl Contacts {
             }
         };
         in_parts(threads, Numbered { first: 0, all: &mut self.parts }, list, |(), ()| ());
-        self.reached.prepare(4 * image.len());
-        &mut self.reached
     }
 
-    /// Joins the listed regions in the image, and their sums.
-    pub(super) fn join(&mut self, all: &mut [Region], image: &mut [u16], threads: usize) {
-        let Contacts { parts, reached, pairs, into } = self;
+    /// Joins the listed regions in the image, and their sums; with those that touch elsewhere.
+    pub(super) fn join<'a>(
+        &mut self,
+        elsewhere: impl Iterator<Item = &'a Touching>,
+        all: &mut [Region],
+        image: &mut [u16],
+        threads: usize,
+    ) {
+        let Contacts { parts, pairs, into } = self;
         reserve_to(pairs, 6 * image.len());
-        parts.iter().chain([&*reached]).for_each(|part| pairs.extend(&part.pairs));
+        parts.iter().for_each(|part| pairs.extend(&part.pairs));
+        elsewhere.for_each(|touching| pairs.extend(&touching.pairs));
         reserve_to(into, image.len());
         into.extend(0..=all.len() as u16);
         pairs.sort_unstable();

@@ -7,6 +7,7 @@
 //! taken in order of their own scatter. A large map is grown over in bands of rows, which threads share; its size
 //! alone decides on them. Regions that a band's edge cuts are merged as any others are (stage "merge").
 
+use super::field::ROWS;
 use super::grid::{Cell, Grid, NONE, Place, next_free};
 use super::settle::Move;
 use super::tiles::{LEVELS, Pyramid, SIDE, hand_down};
@@ -162,6 +163,11 @@ impl Regions {
             );
         });
         self.unite(&mut pyramid.grids[0]);
+    }
+
+    /// The rows of pixels of each band.
+    pub(super) fn bands(&self) -> impl ExactSizeIterator<Item = Range<usize>> {
+        self.bands.iter().map(|band| band.rows.start * ROWS..band.rows.end * ROWS)
     }
 
     /// Cuts a map into bands of nearly as many rows.

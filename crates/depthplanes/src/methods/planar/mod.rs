@@ -239,7 +239,8 @@ impl Runner {
         self.assign(&noise, false, job.threads);
         self.reach(&noise, job.threads);
         watch(Moment::Assigned, self, &noise);
-        self.contacts.join(&mut self.regions.all, &mut self.image, job.threads);
+        let Runner { regions, image, reach, contacts, .. } = self;
+        contacts.join(reach.touching(), &mut regions.all, image, job.threads);
         job.done("assign");
         let Runner { params, field, regions, image, finisher, pieces, strays, .. } = self;
         let ids = planes::of_image(image, field)?;
@@ -334,7 +335,7 @@ impl Runner {
         let Runner { params, field, regions, image, seams, reach, contacts, .. } = self;
         let planes = params.planes(&regions.all, noise, false);
         seams.find(&image[..field.q.len()], field.stride, threads);
-        let touching = contacts.list(seams, &image[..field.q.len()], threads);
-        reach.reach(field, &planes, seams, image, touching);
+        contacts.list(seams, &image[..field.q.len()], threads);
+        reach.reach(field, &planes, seams, regions.bands(), image, threads);
     }
 }

@@ -10,76 +10,147 @@ use super::field::Field;
 use super::planes::{BENT, Planes};
 use super::seams::Seams;
 use crate::group::reserve_to;
+use crate::parallel::{Rows, in_parts};
+use std::ops::Range;
 
 /// Lets planes reach on; reuses its memory.
 #[derive(Debug, Default)]
 pub(super) struct Reach {
-    /// Pixels that were just reached, whose neighbours are still to be asked.
-    queue: Vec<u32>,
+    bands: Vec<Band>,
 }
 
-/// The map's pixels and what they are held against.
-struct Around<'a> {
-    field: &'a Field,
-    planes: &'a Planes<'a>,
+/// Rows of the image.
+#[derive(Debug, Default)]
+struct Band {
+    rows: Range<usize>,
+    work: Work,
+}
+
+/// Memory of some rows.
+#[derive(Debug, Default)]
+struct Work {
+    /// Pixels that were just reached, whose neighbours are still to be asked.
+    queue: Vec<[usize; 2]>,
+    touching: Touching,
 }
 
 impl Reach {
-    /// Lets planes reach on, though not into curved regions, and lists the regions that they touch there.
+    /// Lets planes reach on, though not into curved regions, and lists the regions that they touch there: in bands of rows on
+    /// as many threads, and then over the bands' edges.
     pub(super) fn reach(
         &mut self,
         field: &Field,
         planes: &Planes<'_>,
         seams: &Seams,
+        bands: impl ExactSizeIterator<Item = Range<usize>>,
         image: &mut [u16],
-        touching: &mut Touching,
+        threads: usize,
     ) {
-        reserve_to(&mut self.queue, field.width * field.height);
-        let around = Around { field, planes };
-        seams.each_open(|place| {
-            self.ask(&around, place, image, touching);
-            while let Some(at) = self.queue.pop() {
-                let place = [at as usize % field.stride, at as usize / field.stride];
-                around.neighbours(place).into_iter().for_each(|place| self.ask(&around, place, image, touching));
+        self.bands.resize_with(bands.len(), Band::default);
+        for (band, rows) in self.bands.iter_mut().zip(bands) {
+            band.rows = rows.start..rows.end.min(field.height);
+            reserve_to(&mut band.work.queue, rows.len() * field.stride);
+            band.work.touching.prepare(4 * rows.len() * field.stride);
+        }
+        let reach = |Bands { bands, mut image, stride }: Bands<'_>| {
+            for Band { rows, work } in bands {
+                let image = image.split_off_mut(..rows.len() * stride).expect("the band's rows");
+                let mut area = Area { field, planes, rows: rows.clone(), image, work };
+                seams.each_open(rows.clone(), |place| area.ask_around(place));
             }
-        });
+        };
+        let within = &mut image[..field.height * field.stride];
+        in_parts(threads, Bands { bands: &mut self.bands, image: within, stride: field.stride }, reach, |(), ()| ());
+        for band in &mut self.bands[1..] {
+            let edge = band.rows.start - 1..band.rows.start + 1;
+            let mut area = Area { field, planes, rows: 0..field.height, image, work: &mut band.work };
+            edge.for_each(|v| (0..field.width).for_each(|u| area.ask_around([u, v])));
+        }
+    }
+
+    /// The regions that touch where planes reached on.
+    pub(super) fn touching(&self) -> impl Iterator<Item = &Touching> {
+        self.bands.iter().map(|band| &band.work.touching)
+    }
+}
+
+/// Bands and their pixels.
+struct Bands<'a> {
+    bands: &'a mut [Band],
+    image: &'a mut [u16],
+    stride: usize,
+}
+
+impl Rows for Bands<'_> {
+    fn rows(&self) -> usize {
+        self.bands.len()
+    }
+
+    fn cut(self, count: usize) -> (Self, Self) {
+        let Bands { bands, image, stride } = self;
+        let (first, second) = bands.split_at_mut(count);
+        let (above, below) = image.split_at_mut((second[0].rows.start - first[0].rows.start) * stride);
+        (Bands { bands: first, image: above, stride }, Bands { bands: second, image: below, stride })
+    }
+}
+
+/// Rows over which planes reach on; there is nothing beyond them.
+struct Area<'a> {
+    field: &'a Field,
+    planes: &'a Planes<'a>,
+    rows: Range<usize>,
+    image: &'a mut [u16],
+    work: &'a mut Work,
+}
+
+impl Area<'_> {
+    /// Asks a pixel, and its neighbours if it is reached, and so on.
+    #[inline(always)]
+    fn ask_around(&mut self, place: [usize; 2]) {
+        self.ask(place);
+        while let Some(place) = self.work.queue.pop() {
+            self.neighbours(place).into_iter().for_each(|place| self.ask(place));
+        }
     }
 
     /// Gives a pixel without a region the nearest of the planes of its neighbours that it lies on, if any.
     #[inline(always)]
-    fn ask(&mut self, around: &Around<'_>, place: [usize; 2], image: &mut [u16], touching: &mut Touching) {
-        let Around { field, planes } = *around;
-        let at = place[1] * field.stride + place[0];
-        if image[at] > 0 || !field.q[at].is_finite() {
+    fn ask(&mut self, place: [usize; 2]) {
+        let at = self.at(place);
+        let q = self.field.q[place[1] * self.field.stride + place[0]];
+        if self.image[at] > 0 || !q.is_finite() {
             return;
         }
-        let (q, [u, v]) = (f64::from(field.q[at]), place.map(|place| place as f64));
+        let (q, [u, v]) = (f64::from(q), place.map(|place| place as f64));
+        let labels = self.neighbours(place).map(|place| self.image[self.at(place)]);
         let (mut own, mut best) = (0, f64::INFINITY);
-        for [x, y] in around.neighbours(place) {
-            let label = image[y * field.stride + x];
+        for label in labels {
             if label > 0 && label != BENT && label != own {
-                let region = planes.region(u32::from(label) - 1);
+                let region = self.planes.region(u32::from(label) - 1);
                 let on_plane = region.at(u, v);
                 let off = (q - on_plane).powi(2);
-                if off < best && off <= planes.reach(region, on_plane) {
+                if off < best && off <= self.planes.reach(region, on_plane) {
                     (own, best) = (label, off);
                 }
             }
         }
         if own > 0 {
-            image[at] = own;
-            self.queue.push(at as u32);
-            let labels = around.neighbours(place).map(|[x, y]| image[y * field.stride + x]);
-            labels.into_iter().for_each(|label| touching.touch(own, label));
+            self.image[at] = own;
+            self.work.queue.push(place);
+            labels.into_iter().for_each(|label| self.work.touching.touch(own, label));
         }
     }
-}
 
-impl Around<'_> {
-    /// The four neighbours of a pixel; at the map's edge itself in place of those that are missing.
+    /// Where a pixel stands in the image.
+    #[inline(always)]
+    fn at(&self, [u, v]: [usize; 2]) -> usize {
+        (v - self.rows.start) * self.field.stride + u
+    }
+
+    /// The four neighbours of a pixel; at the edge itself in place of those that are missing.
     #[inline(always)]
     fn neighbours(&self, [u, v]: [usize; 2]) -> [[usize; 2]; 4] {
-        let [right, below] = [(u + 1).min(self.field.width - 1), (v + 1).min(self.field.height - 1)];
-        [[u.saturating_sub(1), v], [right, v], [u, v.saturating_sub(1)], [u, below]]
+        let [right, below] = [(u + 1).min(self.field.width - 1), (v + 1).min(self.rows.end - 1)];
+        [[u.saturating_sub(1), v], [right, v], [u, v.saturating_sub(1).max(self.rows.start)], [u, below]]
     }
 }

@@ -40,10 +40,10 @@ impl Seams {
         self.words = words;
     }
 
-    /// Calls `visit` with (u, v) of each pixel without a region that has a neighbour with one, row by row.
-    pub(super) fn each_open(&self, mut visit: impl FnMut([usize; 2])) {
+    /// Calls `visit` with (u, v) of each pixel of some rows without a region that has a neighbour with one, row by row.
+    pub(super) fn each_open(&self, rows: Range<usize>, mut visit: impl FnMut([usize; 2])) {
         let words = self.words;
-        for v in 0..self.rows() {
+        for v in rows {
             let [above, here, below] = [v, v + 1, v + 2].map(|row| &self.labelled[row * words..][..words]);
             for word in 0..words {
                 let from_right = here.get(word + 1).map_or(0, |next| next << (WORD - 1));
