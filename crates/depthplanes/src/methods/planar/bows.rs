@@ -5,8 +5,8 @@
 
 use super::grid::each_run;
 use super::grow::Region;
+use super::pyramid::Pyramid;
 use super::quadratic::{Frame, Sums};
-use super::tiles::Pyramid;
 use crate::group::reserve_to;
 
 /// Largest root mean square, in noise deviations of a pixel, of a plane's bow. Noise alone gives a region of

@@ -3,7 +3,8 @@
 //! In: a map and its space. Out: q for every pixel in rows of [`Field::stride`], with room for whole
 //! blocks of tiles around it, so that no later stage has to mind the map's edge.
 
-use super::tiles::{LANES, LEVELS, SIDE};
+use super::pyramid::LEVELS;
+use super::tiles::{LANES, SIDE};
 use crate::map::{DepthView, Pixel, Validity};
 use crate::noise::{Space, Steps};
 

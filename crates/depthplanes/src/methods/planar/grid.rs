@@ -147,7 +147,7 @@ impl Grid {
 
     /// How many cells there are.
     pub(super) fn len(&self) -> usize {
-        self.region.len()
+        self.columns * self.rows
     }
 
     /// Valid pixels of a cell.

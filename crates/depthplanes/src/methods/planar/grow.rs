@@ -4,17 +4,16 @@
 //! goes from the coarsest cells to the finest: large flat cells give regions whose planes are
 //! well known before the small cells along the borders are asked. A cell joins by its squared residuals
 //! about the region's plane, which its sums give without touching a pixel; among cells of one size, seeds are
-//! taken in order of their own scatter. A large map is grown over in bands of rows, which threads share; its size
-//! alone decides on them. Regions that a band's edge cuts are merged as any others are (stage "merge").
+//! taken in order of their own scatter. A large map is grown over band by band ([`super::bands`]);
+//! regions that a band's edge cuts are merged as any others are (stage "merge").
 
-use super::field::ROWS;
+use super::bands::in_bands;
 use super::grid::{Cell, Grid, NONE, Place, next_free};
-use super::settle::Move;
-use super::tiles::{LEVELS, Pyramid, SIDE, hand_down};
+use super::pyramid::{LEVELS, Pyramid, hand_down};
+use super::settle::Settling;
+use super::tiles::SIDE;
 use crate::fit::Moments;
 use crate::group::{reserve_to, vectorised};
-use crate::parallel::{Rows, in_parts};
-use std::array::from_fn;
 use std::mem::take;
 use std::ops::Range;
 
@@ -27,11 +26,6 @@ const REFIT: f64 = 1.125;
 const OF_TILE: f32 = 0.5;
 /// Fewest pixels of a larger cell that starts or joins one: half of a cell may lie in a gap that it would reach over.
 const OF_CELL: f32 = 0.75;
-
-/// Pixels of a band, about: more than most sensors' whole frames have, so that few planes are cut.
-const BAND: usize = 1 << 19;
-/// Most bands of a map.
-const BANDS: usize = 8;
 
 /// Cells on one plane.
 #[derive(Clone, Copy, Debug)]
@@ -126,20 +120,16 @@ impl Region {
 #[derive(Debug, Default)]
 pub(super) struct Regions {
     pub(super) all: Vec<Region>,
-    pub(super) bands: Vec<Band>,
-    /// For each region whether a tile went over to it or from it.
-    pub(super) has_changed: Vec<bool>,
+    /// For each band what grows in it.
+    growths: Vec<Growth>,
+    pub(super) settling: Settling,
 }
 
-/// The regions of some rows; reuses its memory.
+/// The regions of a band.
 #[derive(Debug, Default)]
-pub(super) struct Band {
-    /// Rows of the coarsest cells.
-    rows: Range<usize>,
+struct Growth {
     all: Vec<Region>,
     work: Work,
-    /// Tiles that go over to other regions once all have grown.
-    pub(super) moves: Vec<Move>,
 }
 
 /// Memory of growth.
@@ -155,123 +145,57 @@ impl Regions {
     /// Grows regions over a pyramid, on as many threads.
     pub(super) fn grow(&mut self, pyramid: &mut Pyramid, confidence: f64, threads: usize) {
         reserve_to(&mut self.all, pyramid.grids[0].len());
-        self.cut(pyramid);
-        in_bands(&mut self.bands, pyramid, threads, |band, pyramid, regions| {
+        self.growths.resize_with(pyramid.bands.len(), Growth::default);
+        let mut regions = pyramid.grids.each_mut().map(|grid| take(&mut grid.region));
+        let mut level = 0;
+        let wholes = regions.each_mut().map(|region| {
+            level += 1;
+            (&mut region[..], pyramid.per_row(level - 1))
+        });
+        in_bands(&pyramid.bands, &mut self.growths, wholes, threads, |band, growth, regions| {
             vectorised(
                 #[inline(always)]
-                || band.grow(pyramid, regions, confidence),
+                || growth.grow(pyramid, band, regions, confidence),
             );
         });
-        self.unite(&mut pyramid.grids[0]);
-    }
-
-    /// The rows of pixels of each band.
-    pub(super) fn bands(&self) -> impl ExactSizeIterator<Item = Range<usize>> {
-        self.bands.iter().map(|band| band.rows.start * ROWS..band.rows.end * ROWS)
-    }
-
-    /// Cuts a map into bands of nearly as many rows.
-    fn cut(&mut self, pyramid: &Pyramid) {
-        let [tiles, .., cells] = &pyramid.grids;
-        let count = (tiles.len() * SIDE * SIDE).div_ceil(BAND).min(BANDS);
-        let rows = cells.rows.div_ceil(count);
-        self.bands.resize_with(cells.rows.div_ceil(rows), Band::default);
-        for (band, first) in self.bands.iter_mut().zip((0..).step_by(rows)) {
-            band.rows = first..(first + rows).min(cells.rows);
-            let tiles = band.rows_on(0).len() * tiles.columns;
-            reserve_to(&mut band.all, tiles);
-            reserve_to(&mut band.work.seeds, tiles);
-            reserve_to(&mut band.work.queue, tiles);
-            reserve_to(&mut band.moves, tiles);
-        }
+        pyramid.grids.iter_mut().zip(regions).for_each(|(grid, region)| grid.region = region);
+        self.unite(pyramid);
     }
 
     /// Numbers the regions of all bands.
-    fn unite(&mut self, tiles: &mut Grid) {
-        for band in &self.bands {
+    fn unite(&mut self, pyramid: &mut Pyramid) {
+        let per_row = pyramid.per_row(0);
+        let mut left = &mut pyramid.grids[0].region[..];
+        for (band, growth) in pyramid.bands.iter().zip(&self.growths) {
             let before = self.all.len() as u32;
-            self.all.extend(&band.all);
+            self.all.extend(&growth.all);
+            let own = left.split_off_mut(..band.len() * per_row).expect("the band's rows");
             if before > 0 {
-                let rows = band.rows_on(0);
-                let region = &mut tiles.region[rows.start * tiles.columns..rows.end * tiles.columns];
-                region.iter_mut().for_each(|id| *id += if *id == NONE { 0 } else { before });
+                own.iter_mut().for_each(|id| *id += if *id == NONE { 0 } else { before });
             }
         }
     }
 }
 
-impl Band {
-    /// Its rows of the cells of a level.
-    pub(super) fn rows_on(&self, level: usize) -> Range<usize> {
-        let finer = LEVELS - 1 - level;
-        self.rows.start << finer..self.rows.end << finer
-    }
-
-    /// Grows its regions; `regions`: for each level and cell of its rows the region.
+impl Growth {
+    /// Grows the regions of a band; `regions`: for each level and cell of its rows the region.
     #[inline(always)]
-    fn grow(&mut self, pyramid: &Pyramid, mut regions: [&mut [u32]; LEVELS], confidence: f64) {
+    fn grow(&mut self, pyramid: &Pyramid, band: &Range<usize>, mut regions: [&mut [u32]; LEVELS], confidence: f64) {
+        let Growth { all, work } = self;
+        reserve_to(all, regions[0].len());
+        reserve_to(&mut work.seeds, regions[0].len());
+        reserve_to(&mut work.queue, regions[0].len());
         for level in (0..LEVELS).rev() {
-            let (grid, rows) = (&pyramid.grids[level], self.rows_on(level));
+            let (grid, rows) = (&pyramid.grids[level], pyramid.rows_of(band, level));
             let (finer, coarser) = regions.split_at_mut(level + 1);
             if let [coarser, ..] = coarser {
                 hand_down(grid, rows.start, coarser, finer[level]);
             }
-            let Band { all, work, .. } = self;
             let mut area = Area { grid, confidence, rows, region: &mut *finer[level], all, work };
             area.grow_on();
             area.seed();
         }
-        self.all.iter_mut().for_each(Region::refit);
-    }
-}
-
-/// Does the work on each band, on as many threads; it is handed the regions of the band's cells, a grid's at a time.
-pub(super) fn in_bands(
-    bands: &mut [Band],
-    pyramid: &mut Pyramid,
-    threads: usize,
-    work: impl Fn(&mut Band, &Pyramid, [&mut [u32]; LEVELS]) + Sync,
-) {
-    let mut regions = pyramid.grids.each_mut().map(|grid| take(&mut grid.region));
-    let work_on = |Bands { bands, mut regions, pyramid }: Bands<'_>| {
-        for band in bands {
-            let own = from_fn(|level| {
-                let cells = band.rows_on(level).len() * pyramid.grids[level].columns;
-                regions[level].split_off_mut(..cells).expect("the band's rows")
-            });
-            work(band, pyramid, own);
-        }
-    };
-    let whole = Bands { bands, regions: regions.each_mut().map(|region| &mut region[..]), pyramid };
-    in_parts(threads, whole, work_on, |(), ()| ());
-    pyramid.grids.iter_mut().zip(regions).for_each(|(grid, region)| grid.region = region);
-}
-
-/// Bands with the regions of their cells.
-struct Bands<'a> {
-    bands: &'a mut [Band],
-    regions: [&'a mut [u32]; LEVELS],
-    pyramid: &'a Pyramid,
-}
-
-impl Rows for Bands<'_> {
-    fn rows(&self) -> usize {
-        self.bands.len()
-    }
-
-    fn cut(self, count: usize) -> (Self, Self) {
-        let Bands { bands, regions, pyramid } = self;
-        let (first, second) = bands.split_at_mut(count);
-        let mut level = 0;
-        let [a, b, c] = regions.map(|region| {
-            let rows = second[0].rows_on(level).start - first[0].rows_on(level).start;
-            level += 1;
-            region.split_at_mut(rows * pyramid.grids[level - 1].columns)
-        });
-        (
-            Bands { bands: first, regions: [a.0, b.0, c.0], pyramid },
-            Bands { bands: second, regions: [a.1, b.1, c.1], pyramid },
-        )
+        all.iter_mut().for_each(Region::refit);
     }
 }
 

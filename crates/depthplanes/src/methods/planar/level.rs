@@ -5,7 +5,7 @@
 //! of those coarsest cells that are flat by their tiles grows with the slope.
 
 use super::grid::{Grid, Place};
-use super::tiles::{LEVELS, Pyramid};
+use super::pyramid::{LEVELS, Pyramid};
 use crate::noise::{Blocks, NoiseModel, SensorNoise, Slants, Space, Tiled, VALID};
 
 /// Memory of this stage.

@@ -5,6 +5,7 @@
 //! where it is exact: inverse depth or disparity, `q = a u + b v + c`.
 
 mod assign;
+mod bands;
 mod bent;
 mod bows;
 mod contact;
@@ -18,6 +19,7 @@ mod level;
 mod merge;
 mod pieces;
 mod planes;
+mod pyramid;
 mod quadratic;
 mod reach;
 mod relief;
@@ -53,11 +55,11 @@ use level::Level;
 use merge::Merger;
 use pieces::Pieces;
 use planes::Planes;
+use pyramid::{LEVELS, Pyramid};
 use reach::Reach;
 use relief::Relief;
 use seams::Seams;
 use strays::Strays;
-use tiles::{LEVELS, Pyramid};
 
 pub(super) static INFO: MethodInfo = MethodInfo {
     name: "planar",
@@ -310,6 +312,7 @@ impl Runner {
         if relief.relieve(&mut pyramid.grids[0], regions, explainer, bows, boxes, confidence) {
             pyramid.hand_up();
             bows.measure(pyramid, &regions.all);
+            facets.find_boxes(&pyramid.grids[0], regions);
         }
         facets.mark(pyramid, regions, &merger.pairs, &explainer.is_explained, optics, threads);
         watch(Moment::Judged, self, noise);
@@ -332,10 +335,10 @@ impl Runner {
 
     /// Lets planes reach on, and lists those that touch.
     fn reach(&mut self, noise: &NoiseModel, threads: usize) {
-        let Runner { params, field, regions, image, seams, reach, contacts, .. } = self;
+        let Runner { params, field, pyramid, regions, image, seams, reach, contacts, .. } = self;
         let planes = params.planes(&regions.all, noise, false);
         seams.find(&image[..field.q.len()], field.stride, threads);
         contacts.list(seams, &image[..field.q.len()], threads);
-        reach.reach(field, &planes, seams, regions.bands(), image, threads);
+        reach.reach(field, &planes, seams, &pyramid.bands, &mut image[..field.q.len()], threads);
     }
 }

@@ -8,7 +8,8 @@
 use super::field::Field;
 use super::planes::BENT;
 use crate::group::{Grouper, Groups, reserve_to, vectorised};
-use crate::parallel::in_parts;
+use crate::parallel::{Numbered, in_parts};
+use std::ops::Range;
 
 /// Pixels of a row that are looked at together.
 const ABREAST: usize = 32;
@@ -32,7 +33,6 @@ pub(super) struct Pieces {
 /// What is found in some rows of the map.
 #[derive(Debug, Default)]
 struct Part {
-    first: usize,
     /// Groups that are one.
     pairs: Vec<[u32; 2]>,
 }
@@ -43,17 +43,17 @@ impl Pieces {
     pub(super) fn join(&mut self, field: &Field, image: &[u16], grouper: &mut Grouper, threads: usize) {
         let Pieces { parts, pairs } = self;
         parts.resize_with(field.height.div_ceil(ROWS), Part::default);
-        parts.iter_mut().zip((0..).step_by(ROWS)).for_each(|(part, first)| part.first = first);
         let groups = grouper.groups();
-        let list = |parts: &mut [Part]| {
-            for part in parts {
+        let list = |parts: Numbered<'_, Part>| {
+            for (number, part) in (parts.first..).zip(parts.all) {
+                let rows = number * ROWS..((number + 1) * ROWS).min(field.height);
                 vectorised(
                     #[inline(always)]
-                    || part.list(field, image, groups),
+                    || part.list(rows, field, image, groups),
                 );
             }
         };
-        in_parts(threads, &mut parts[..], list, |(), ()| ());
+        in_parts(threads, Numbered { first: 0, all: &mut parts[..] }, list, |(), ()| ());
         reserve_to(pairs, image.len());
         parts.iter().for_each(|part| pairs.extend(&part.pairs));
         grouper.unite(pairs);
@@ -62,12 +62,12 @@ impl Pieces {
 
 impl Part {
     #[inline(always)]
-    fn list(&mut self, field: &Field, image: &[u16], groups: &Groups) {
+    fn list(&mut self, rows: Range<usize>, field: &Field, image: &[u16], groups: &Groups) {
         let Field { width, height, stride, ref q, .. } = *field;
         let is_missing = |[u, v]: [usize; 2]| q[v * stride + u].is_nan();
-        let Part { first, pairs } = self;
+        let Part { pairs } = self;
         reserve_to(pairs, ROWS * stride);
-        for v in *first..(*first + ROWS).min(height) {
+        for v in rows {
             for start in (0..stride).step_by(ABREAST) {
                 let Some(apart) = find_apart(image, v * stride + start, stride) else { continue };
                 for (first, eight) in (start..).step_by(8).zip(apart.as_chunks::<8>().0) {

@@ -5,28 +5,22 @@
 //! from the plane instead of on the value. Blocks ask only the planes of tiles nearby; the floor below a ball at the
 //! map's edge has none there.
 
+use super::bands::{finer, in_bands};
 use super::contact::Touching;
-use super::field::Field;
+use super::field::{Field, ROWS};
 use super::planes::{BENT, Planes};
 use super::seams::Seams;
 use crate::group::reserve_to;
-use crate::parallel::{Rows, in_parts};
 use std::ops::Range;
 
 /// Lets planes reach on; reuses its memory.
 #[derive(Debug, Default)]
 pub(super) struct Reach {
-    bands: Vec<Band>,
+    /// For each band.
+    works: Vec<Work>,
 }
 
-/// Rows of the image.
-#[derive(Debug, Default)]
-struct Band {
-    rows: Range<usize>,
-    work: Work,
-}
-
-/// Memory of some rows.
+/// Memory of a band.
 #[derive(Debug, Default)]
 struct Work {
     /// Pixels that were just reached, whose neighbours are still to be asked.
@@ -35,62 +29,37 @@ struct Work {
 }
 
 impl Reach {
-    /// Lets planes reach on, though not into curved regions, and lists the regions that they touch there: in bands of rows on
-    /// as many threads, and then over the bands' edges.
+    /// Lets planes reach on, though not into curved regions, and lists the regions that they touch there: band by band on as
+    /// many threads, and then over the bands' edges.
     pub(super) fn reach(
         &mut self,
         field: &Field,
         planes: &Planes<'_>,
         seams: &Seams,
-        bands: impl ExactSizeIterator<Item = Range<usize>>,
+        bands: &[Range<usize>],
         image: &mut [u16],
         threads: usize,
     ) {
-        self.bands.resize_with(bands.len(), Band::default);
-        for (band, rows) in self.bands.iter_mut().zip(bands) {
-            band.rows = rows.start..rows.end.min(field.height);
-            reserve_to(&mut band.work.queue, rows.len() * field.stride);
-            band.work.touching.prepare(4 * rows.len() * field.stride);
-        }
-        let reach = |Bands { bands, mut image, stride }: Bands<'_>| {
-            for Band { rows, work } in bands {
-                let image = image.split_off_mut(..rows.len() * stride).expect("the band's rows");
-                let mut area = Area { field, planes, rows: rows.clone(), image, work };
-                seams.each_open(rows.clone(), |place| area.ask_around(place));
-            }
-        };
-        let within = &mut image[..field.height * field.stride];
-        in_parts(threads, Bands { bands: &mut self.bands, image: within, stride: field.stride }, reach, |(), ()| ());
-        for band in &mut self.bands[1..] {
-            let edge = band.rows.start - 1..band.rows.start + 1;
-            let mut area = Area { field, planes, rows: 0..field.height, image, work: &mut band.work };
-            edge.for_each(|v| (0..field.width).for_each(|u| area.ask_around([u, v])));
+        let &Field { width, height, stride, .. } = field;
+        self.works.resize_with(bands.len(), Work::default);
+        in_bands(bands, &mut self.works, [(&mut *image, ROWS * stride)], threads, |band, work, [image]| {
+            reserve_to(&mut work.queue, image.len());
+            work.touching.prepare(4 * image.len());
+            let rows = finer(band, ROWS);
+            let rows = rows.start..rows.end.min(height);
+            let mut area = Area { field, planes, rows: rows.clone(), image, work };
+            seams.each_open(rows, |place| area.ask_around(place));
+        });
+        for (band, work) in bands.iter().zip(&mut self.works).skip(1) {
+            let edge = finer(band, ROWS).start;
+            let mut area = Area { field, planes, rows: 0..height, image, work };
+            (edge - 1..edge + 1).for_each(|v| (0..width).for_each(|u| area.ask_around([u, v])));
         }
     }
 
     /// The regions that touch where planes reached on.
     pub(super) fn touching(&self) -> impl Iterator<Item = &Touching> {
-        self.bands.iter().map(|band| &band.work.touching)
-    }
-}
-
-/// Bands and their pixels.
-struct Bands<'a> {
-    bands: &'a mut [Band],
-    image: &'a mut [u16],
-    stride: usize,
-}
-
-impl Rows for Bands<'_> {
-    fn rows(&self) -> usize {
-        self.bands.len()
-    }
-
-    fn cut(self, count: usize) -> (Self, Self) {
-        let Bands { bands, image, stride } = self;
-        let (first, second) = bands.split_at_mut(count);
-        let (above, below) = image.split_at_mut((second[0].rows.start - first[0].rows.start) * stride);
-        (Bands { bands: first, image: above, stride }, Bands { bands: second, image: below, stride })
+        self.works.iter().map(|work| &work.touching)
     }
 }
 

@@ -138,7 +138,7 @@ mod tests {
     use crate::Measure;
     use crate::map::DepthView;
     use crate::methods::planar::field::Field;
-    use crate::methods::planar::tiles::Pyramid;
+    use crate::methods::planar::pyramid::Pyramid;
     use crate::noise::{NoiseModel, SensorNoise, Space};
     use crate::random::Random;
 

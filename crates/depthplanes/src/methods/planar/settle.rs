@@ -5,10 +5,12 @@
 //! left with less than its own, or with tiles of both planes, which bow. Once both planes are known they tell whose
 //! a tile is.
 
+use super::bands::in_bands;
 use super::grid::{Grid, NONE, Place};
-use super::grow::{Region, Regions, in_bands};
-use super::tiles::Pyramid;
+use super::grow::{Region, Regions};
+use super::pyramid::Pyramid;
 use crate::group::{reserve_to, vectorised};
+use std::mem::take;
 use std::ops::Range;
 
 /// Variances by which the other plane has to explain a tile better, so that two pieces of one plane do not trade tiles
@@ -19,9 +21,18 @@ const FAR: f64 = 3.0;
 /// Tiles of a row that are looked at together; a row has a multiple of them.
 const ABREAST: usize = 16;
 
+/// Memory of this stage.
+#[derive(Debug, Default)]
+pub(super) struct Settling {
+    /// For each band the tiles that go over.
+    moves: Vec<Vec<Move>>,
+    /// For each region whether a tile went over to it or from it.
+    has_changed: Vec<bool>,
+}
+
 /// A tile that goes from one region to another.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Move {
+struct Move {
     place: Place,
     from: u32,
     to: u32,
@@ -30,28 +41,29 @@ pub(super) struct Move {
 impl Regions {
     /// Lets the tiles beside other regions go over, on as many threads: band by band, and then along their edges.
     pub(super) fn settle(&mut self, pyramid: &mut Pyramid, threads: usize) {
-        let Regions { all, bands, has_changed } = self;
-        reserve_to(has_changed, pyramid.grids[0].len());
-        has_changed.resize(all.len(), false);
-        let most = pyramid.grids[0].rows;
-        in_bands(bands, pyramid, threads, |band, pyramid, [region, ..]| {
-            let rows = band.rows_on(0);
-            let inner = rows.start + usize::from(rows.start > 0)..rows.end - usize::from(rows.end < most);
-            let mut own = Settling { grid: &pyramid.grids[0], first: rows.start, region, all };
+        let Regions { all, settling: Settling { moves, has_changed }, .. } = self;
+        let mut region = take(&mut pyramid.grids[0].region);
+        let (grid, bands) = (&pyramid.grids[0], &pyramid.bands);
+        moves.resize_with(bands.len(), Vec::new);
+        in_bands(bands, moves, [(&mut region, pyramid.per_row(0))], threads, |band, moves, [region]| {
+            let rows = pyramid.rows_of(band, 0);
+            // Beside its own those of an edge.
+            reserve_to(moves, region.len() + 2 * grid.columns);
+            let inner = rows.start + usize::from(rows.start > 0)..rows.end - usize::from(rows.end < grid.rows);
+            let mut part = Part { grid, first: rows.start, region, all };
             vectorised(
                 #[inline(always)]
-                || own.settle(inner, &mut band.moves),
+                || part.settle(inner, moves),
             );
         });
-        let grid = &mut pyramid.grids[0];
-        let mut region = std::mem::take(&mut grid.region);
-        let mut whole = Settling { grid, first: 0, region: &mut region, all };
-        for after in 1..bands.len() {
-            let edge = bands[after].rows_on(0).start;
-            whole.settle(edge - 1..edge + 1, &mut bands[after].moves);
+        let mut whole = Part { grid, first: 0, region: &mut region, all };
+        for (band, moves) in bands.iter().zip(&mut *moves).skip(1) {
+            let edge = pyramid.rows_of(band, 0).start;
+            whole.settle(edge - 1..edge + 1, moves);
         }
-        grid.region = region;
-        for &Move { place, from, to } in bands.iter().flat_map(|band| &band.moves) {
+        reserve_to(has_changed, grid.len());
+        has_changed.resize(all.len(), false);
+        for &Move { place, from, to } in moves.iter().flatten() {
             let cell = grid.cell(place);
             all[from as usize].give(&cell);
             all[to as usize].take(&cell);
@@ -59,11 +71,12 @@ impl Regions {
         }
         let changed = all.iter_mut().zip(has_changed).filter(|(_, has_changed)| **has_changed);
         changed.for_each(|(region, _)| region.refit());
+        pyramid.grids[0].region = region;
     }
 }
 
 /// Some rows of tiles, of which those within may go over.
-struct Settling<'a> {
+struct Part<'a> {
     grid: &'a Grid,
     /// The first of the rows.
     first: usize,
@@ -71,7 +84,7 @@ struct Settling<'a> {
     all: &'a [Region],
 }
 
-impl Settling<'_> {
+impl Part<'_> {
     /// Lets the tiles of some rows go over; those of the rows beside them are known.
     #[inline(always)]
     fn settle(&mut self, rows: Range<usize>, moves: &mut Vec<Move>) {

@@ -1,194 +1,25 @@
 //! Stage "tiles": the map's small squares, each with its own plane, and larger squares made of them.
 //!
-//! In: the map in q. Out: a pyramid of grids: tiles of [`SIDE`] x [`SIDE`] pixels, cells of 2 x 2 tiles,
-//! and cells of 4 x 4, each with its own plane. All cells of a row are computed side by side, so the loops are plain
-//! arithmetic that the compiler turns into vectors.
+//! In: rows of the map in q, or of cells. Out: the sums and planes of the tiles, or of the cells of 2 x 2, in them. All cells
+//! of a row are computed side by side, so the loops are plain arithmetic that the compiler turns into vectors.
 
-use super::field::{Field, ROWS, fill_row};
-use super::grid::{Grid, GridRows, NONE, Sums, drift, limit};
-use super::planes::of_slope;
-use crate::group::vectorised;
-use crate::map::{DepthView, Pixel};
-use crate::noise::{NoiseModel, Space};
-use crate::parallel::{Rows, in_parts};
+use super::grid::{GridRows, Sums, drift, limit};
 use std::array::from_fn;
 
 /// Columns and rows of a tile. The smallest plane has to hold a few; a tile's own plane should still
 /// mean something under noise. Of 4, 5, 6 and 8, 4 was the best on ABW and on made-up rooms.
 pub(super) const SIDE: usize = 4;
-/// Grids of a pyramid. The sides of their cells double.
-pub(super) const LEVELS: usize = 3;
 /// Cells that are computed at a time.
 pub(super) const LANES: usize = 16;
 /// One number of each of them.
 type Lanes = [f32; LANES];
-
-/// The grids of a map, the finest first.
-#[derive(Debug)]
-pub(super) struct Pyramid {
-    pub(super) grids: [Grid; LEVELS],
-}
-
-impl Default for Pyramid {
-    fn default() -> Self {
-        Pyramid { grids: from_fn(|level| Grid::new(SIDE << level)) }
-    }
-}
-
-impl Pyramid {
-    /// Turns a map into q and sums it, tile by tile, and the tiles, cell by cell.
-    pub(super) fn sum<T: Pixel>(&mut self, map: &DepthView<'_, T>, space: Space, threads: usize, field: &mut Field) {
-        self.grids.iter_mut().for_each(|grid| grid.prepare(field));
-        let Field { stride, ref mut q, .. } = *field;
-        let whole = Band { first: 0, stride, q, cells: self.whole() };
-        let sum = |band: Band<'_>| {
-            vectorised(
-                #[inline(always)]
-                || band.sum(map, space),
-            )
-        };
-        field.valid_pixels = in_parts(threads, whole, sum, |a, b| a + b);
-    }
-
-    /// Holds the cells against a noise model.
-    pub(super) fn expect(&mut self, noise: &NoiseModel, confidence: f64, threads: usize) {
-        let expect = |mut cells: Cells<'_>| {
-            vectorised(
-                #[inline(always)]
-                || cells.expect(noise, confidence as f32),
-            );
-        };
-        in_parts(threads, self.whole(), expect, |(), ()| ());
-    }
-
-    fn whole(&mut self) -> Cells<'_> {
-        Cells { grids: self.grids.each_mut().map(Grid::whole) }
-    }
-
-    /// Gives each coarse cell the region that its four parts agree on.
-    pub(super) fn hand_up(&mut self) {
-        for level in 1..LEVELS {
-            let (finer, coarser) = self.grids.split_at_mut(level);
-            let (parts, grid) = (&finer[level - 1], &mut coarser[0]);
-            for (row, cells) in grid.region.chunks_exact_mut(grid.columns).enumerate() {
-                let above = parts.region[2 * row * parts.columns..].as_chunks::<2>().0;
-                let below = parts.region[(2 * row + 1) * parts.columns..].as_chunks::<2>().0;
-                for (cell, (above, below)) in cells.iter_mut().zip(above.iter().zip(below)) {
-                    let id = above[0];
-                    *cell = if [above[1], below[0], below[1]] == [id; 3] { id } else { NONE };
-                }
-            }
-        }
-    }
-}
-
-/// Gives the regions of cells to those of their parts that have a pixel; the parts begin in row `first`.
-pub(super) fn hand_down(parts: &Grid, first: usize, regions: &[u32], to: &mut [u32]) {
-    let rows =
-        to.chunks_exact_mut(parts.columns).zip(parts.sums.n[first * parts.columns..].chunks_exact(parts.columns));
-    for (row, (to, pixels)) in rows.enumerate() {
-        let above = &regions[row / 2 * (parts.columns / 2)..];
-        for ((part, pixels), &region) in to.as_chunks_mut::<2>().0.iter_mut().zip(pixels.as_chunks::<2>().0).zip(above)
-        {
-            *part = pixels.map(|pixels| if pixels > 0.0 { region } else { NONE });
-        }
-    }
-}
-
-/// The cells of some rows of the coarsest ones, of all sizes.
-struct Cells<'a> {
-    grids: [GridRows<'a>; LEVELS],
-}
-
-impl Rows for Cells<'_> {
-    fn rows(&self) -> usize {
-        self.grids[LEVELS - 1].rows()
-    }
-
-    fn cut(self, rows: usize) -> (Self, Self) {
-        let mut level = 0;
-        let [a, b, c] = self.grids.map(|grid| {
-            level += 1;
-            grid.cut(rows << (LEVELS - level))
-        });
-        (Cells { grids: [a.0, b.0, c.0] }, Cells { grids: [a.1, b.1, c.1] })
-    }
-}
-
-impl Cells<'_> {
-    #[inline(always)]
-    fn expect(&mut self, noise: &NoiseModel, confidence: f32) {
-        let ray = noise.ray() as f32;
-        for level in 0..LEVELS {
-            let (finer, coarser) = self.grids.split_at_mut(level);
-            let grid = &mut coarser[0];
-            noise.variances(grid.sums.c, grid.variance);
-            for ((variance, &a), &b) in grid.variance.iter_mut().zip(&*grid.sums.a).zip(&*grid.sums.b) {
-                *variance += of_slope(ray, a, b);
-            }
-            grid.hold_against_noise(finer.last(), confidence);
-        }
-    }
-}
-
-/// Rows of a map, as many as some of the coarsest cells have.
-struct Band<'a> {
-    /// The map's row in the band's first.
-    first: usize,
-    stride: usize,
-    q: &'a mut [f32],
-    cells: Cells<'a>,
-}
-
-impl Rows for Band<'_> {
-    fn rows(&self) -> usize {
-        self.cells.rows()
-    }
-
-    fn cut(self, rows: usize) -> (Self, Self) {
-        let Band { first, stride, q, cells } = self;
-        let (q, cells) = (q.split_at_mut(rows * ROWS * stride), cells.cut(rows));
-        (
-            Band { first, stride, q: q.0, cells: cells.0 },
-            Band { first: first + rows * ROWS, stride, q: q.1, cells: cells.1 },
-        )
-    }
-}
-
-impl Band<'_> {
-    /// Turns its rows into q and sums them, those of a row of the coarsest cells at a time, which the nearest cache holds;
-    /// how many pixels are valid.
-    #[inline(always)]
-    fn sum<T: Pixel>(self, map: &DepthView<'_, T>, space: Space) -> usize {
-        let Band { first, stride, q, cells: Cells { mut grids } } = self;
-        let mut valid = 0;
-        for (row, q) in q.chunks_exact_mut(ROWS * stride).enumerate() {
-            let first = first + row * ROWS;
-            for (v, q) in (first..map.height()).zip(q.chunks_exact_mut(stride)) {
-                valid += fill_row(map.row(v), &mut q[..map.width()], map.validity(), space);
-            }
-            let tiles = ROWS / SIDE;
-            for (below, q) in q.chunks_exact(SIDE * stride).enumerate() {
-                sum_tiles(q, row * tiles + below, &mut grids[0]);
-            }
-            for level in 1..LEVELS {
-                let (finer, coarser) = grids.split_at_mut(level);
-                let cells = tiles >> level;
-                for below in 0..cells {
-                    sum_cells(&finer[level - 1], row * cells + below, SIDE << level, &mut coarser[0]);
-                }
-            }
-        }
-        valid
-    }
-}
 
 /// The middle of a tile's columns and rows from its own.
 const OFF: [f32; SIDE] = [-1.5, -0.5, 0.5, 1.5];
 
 /// Sums a row of tiles.
 #[inline(always)]
-fn sum_tiles(q: &[f32], row: usize, grid: &mut GridRows<'_>) {
+pub(super) fn sum_tiles(q: &[f32], row: usize, grid: &mut GridRows<'_>) {
     let mut rows = q.chunks_exact(q.len() / SIDE);
     let rows: [_; SIDE] = from_fn(|_| rows.next().expect("so many rows").as_chunks::<{ LANES * SIDE }>().0);
     for block in 0..rows[0].len() {
@@ -198,7 +29,7 @@ fn sum_tiles(q: &[f32], row: usize, grid: &mut GridRows<'_>) {
 
 /// Sums a row of cells of `side` columns.
 #[inline(always)]
-fn sum_cells(parts: &GridRows<'_>, row: usize, side: usize, grid: &mut GridRows<'_>) {
+pub(super) fn sum_cells(parts: &GridRows<'_>, row: usize, side: usize, grid: &mut GridRows<'_>) {
     let quarter = side as f32 / 4.0;
     for column in (0..grid.columns).step_by(LANES) {
         let first = 2 * row * parts.columns + 2 * column;
@@ -367,7 +198,7 @@ impl GridRows<'_> {
 
     /// Roughness from each cell's own residuals, and from those of its parts.
     #[inline(always)]
-    fn hold_against_noise(&mut self, parts: Option<&GridRows<'_>>, confidence: f32) {
+    pub(super) fn hold_against_noise(&mut self, parts: Option<&GridRows<'_>>, confidence: f32) {
         let GridRows { sums: Sums { n, squares, strain, .. }, variance, roughness, columns, .. } = self;
         let numbers = n.iter().zip(&**squares).zip(&**strain).zip(&**variance);
         for ((((&n, &squares), &strain), &variance), roughness) in numbers.zip(&mut **roughness) {
