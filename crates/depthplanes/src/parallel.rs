@@ -3,6 +3,8 @@
 //! In: something that can be cut between its rows. Out: what the work on the parts gives, put together. Only for work
 //! whose answer does not depend on where the cuts are.
 
+use std::ops::Range;
+
 /// Something made of rows.
 pub(crate) trait Rows: Sized + Send {
     /// How many.
@@ -94,6 +96,23 @@ impl<T: Send> Rows for Numbered<'_, T> {
         let (above, below) = all.split_at_mut(rows);
         (Numbered { first, all: above }, Numbered { first: first + rows, all: below })
     }
+}
+
+/// Does the work on `per_part` rows at a time, on as many threads; each of these parts has memory of its own.
+pub(crate) fn in_rows<P: Default + Send>(
+    threads: usize,
+    rows: usize,
+    per_part: usize,
+    parts: &mut Vec<P>,
+    work: impl Fn(&mut P, Range<usize>) + Sync,
+) {
+    parts.resize_with(rows.div_ceil(per_part), P::default);
+    let work_on = |some: Numbered<'_, P>| {
+        for (number, part) in (some.first..).zip(some.all) {
+            work(part, number * per_part..((number + 1) * per_part).min(rows));
+        }
+    };
+    in_parts(threads, Numbered { first: 0, all: parts }, work_on, |(), ()| ());
 }
 
 #[cfg(test)]

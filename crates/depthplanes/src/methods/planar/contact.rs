@@ -8,7 +8,7 @@ use super::merge::{BEND, bend};
 use super::planes::BENT;
 use super::seams::Seams;
 use crate::group::{reserve_to, vectorised};
-use crate::parallel::{Numbered, in_parts};
+use crate::parallel::{in_parts, in_rows};
 
 /// Pixels that get their labels together.
 const ABREAST: usize = 16;
@@ -60,17 +60,12 @@ impl Touching {
 impl Contacts {
     /// Lists the regions that touch in an image, on as many threads.
     pub(super) fn list(&mut self, seams: &Seams, image: &[u16], threads: usize) {
-        let rows = seams.rows();
-        self.parts.resize_with(rows.div_ceil(ROWS), Touching::default);
-        let list = |parts: Numbered<'_, Touching>| {
-            for (number, part) in (parts.first..).zip(parts.all) {
-                let rows = number * ROWS..((number + 1) * ROWS).min(rows);
-                // A pixel makes two pairs, with its left and its upper neighbour.
-                part.prepare(2 * rows.len() * image.len() / seams.rows());
-                seams.each(rows, image, |a, b| part.touch(a, b));
-            }
-        };
-        in_parts(threads, Numbered { first: 0, all: &mut self.parts }, list, |(), ()| ());
+        // A pixel makes two pairs, with its left and its upper neighbour.
+        let per_row = 2 * image.len() / seams.rows();
+        in_rows(threads, seams.rows(), ROWS, &mut self.parts, |part, rows| {
+            part.prepare(rows.len() * per_row);
+            seams.each(rows, image, |a, b| part.touch(a, b));
+        });
     }
 
     /// Joins the listed regions in the image, and their sums; with those that touch elsewhere.

@@ -8,7 +8,7 @@ use super::grow::{Region, Regions};
 use crate::error::{Error, Result};
 use crate::fit::Moments;
 use crate::group::{reserve_to, vectorised};
-use crate::parallel::{Numbered, in_parts};
+use crate::parallel::{in_parts, in_rows};
 use crate::select::MAX_PLANES;
 use std::ops::Range;
 
@@ -108,17 +108,12 @@ impl Merger {
     /// Lists the pairs of regions side by side, on as many threads.
     fn list_pairs(&mut self, grid: &Grid, threads: usize) {
         let Merger { pairs, parts, .. } = self;
-        parts.resize_with(grid.rows.div_ceil(ROWS), Part::default);
-        let list = |parts: Numbered<'_, Part>| {
-            for (number, part) in (parts.first..).zip(parts.all) {
-                let rows = number * ROWS..((number + 1) * ROWS).min(grid.rows);
-                vectorised(
-                    #[inline(always)]
-                    || part.list(grid, rows),
-                );
-            }
-        };
-        in_parts(threads, Numbered { first: 0, all: &mut parts[..] }, list, |(), ()| ());
+        in_rows(threads, grid.rows, ROWS, parts, |part, rows| {
+            vectorised(
+                #[inline(always)]
+                || part.list(grid, rows),
+            );
+        });
         parts.iter().for_each(|part| pairs.extend(&part.pairs));
         unite(pairs);
     }

@@ -8,7 +8,7 @@
 use super::field::Field;
 use super::planes::BENT;
 use crate::group::{Grouper, Groups, reserve_to, vectorised};
-use crate::parallel::{Numbered, in_parts};
+use crate::parallel::in_rows;
 use std::ops::Range;
 
 /// Pixels of a row that are looked at together.
@@ -42,19 +42,14 @@ impl Pieces {
     /// on no plane parts them. The image is followed by [`slack`] pixels.
     pub(super) fn join(&mut self, field: &Field, image: &[u16], grouper: &mut Grouper, threads: usize) {
         let Pieces { parts, pairs } = self;
-        parts.resize_with(field.height.div_ceil(ROWS), Part::default);
         let groups = grouper.groups();
-        let list = |parts: Numbered<'_, Part>| {
-            for (number, part) in (parts.first..).zip(parts.all) {
-                let rows = number * ROWS..((number + 1) * ROWS).min(field.height);
-                vectorised(
-                    #[inline(always)]
-                    || part.list(rows, field, image, groups),
-                );
-            }
-        };
-        in_parts(threads, Numbered { first: 0, all: &mut parts[..] }, list, |(), ()| ());
-        reserve_to(pairs, image.len());
+        in_rows(threads, field.height, ROWS, parts, |part, rows| {
+            vectorised(
+                #[inline(always)]
+                || part.list(rows, field, image, groups),
+            );
+        });
+        reserve_to(pairs, 2 * image.len());
         parts.iter().for_each(|part| pairs.extend(&part.pairs));
         grouper.unite(pairs);
     }
@@ -66,7 +61,8 @@ impl Part {
         let Field { width, height, stride, ref q, .. } = *field;
         let is_missing = |[u, v]: [usize; 2]| q[v * stride + u].is_nan();
         let Part { pairs } = self;
-        reserve_to(pairs, ROWS * stride);
+        // On a chequered image every second pixel is two steps from four others.
+        reserve_to(pairs, 2 * ROWS * stride);
         for v in rows {
             for start in (0..stride).step_by(ABREAST) {
                 let Some(apart) = find_apart(image, v * stride + start, stride) else { continue };
