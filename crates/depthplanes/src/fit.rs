@@ -160,7 +160,7 @@ impl ValueSums {
     /// Adds a run of pixels of one row: columns `u, u + 1, ..`, row `v`, each value turned into q.
     #[inline(always)]
     pub fn add<T: Copy>(&mut self, u: f64, v: f64, values: &[T], q: impl Fn(T) -> f64) {
-        let [mut sum, mut sum_u, mut squares] = [[0.0; LANES]; 3];
+        let [mut sum, mut sum_k, mut squares] = [[0.0; LANES]; 3];
         in_lanes(
             values,
             |_, value| q(value),
@@ -168,7 +168,7 @@ impl ValueSums {
             |k, q| {
                 for lane in 0..LANES {
                     sum[lane] += q[lane];
-                    sum_u[lane] += (u + k[lane]) * q[lane];
+                    sum_k[lane] += k[lane] * q[lane];
                     squares[lane] += q[lane] * q[lane];
                 }
             },
@@ -176,7 +176,7 @@ impl ValueSums {
         let [of_q, of_uq, of_vq, of_qq] = &mut self.lanes;
         for lane in 0..LANES {
             of_q[lane] += sum[lane];
-            of_uq[lane] += sum_u[lane];
+            of_uq[lane] += u * sum[lane] + sum_k[lane];
             of_vq[lane] += v * sum[lane];
             of_qq[lane] += squares[lane];
         }

@@ -28,15 +28,19 @@ impl Isa for Portable {
     #[inline(always)]
     fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
         let mut begun = 0;
-        for (w, pixels) in row.chunks_mut(64).enumerate() {
-            let (valid, starts) = (valid[w], starts[w]);
-            if starts == 0 && (valid == 0 || valid == u64::MAX) {
-                pixels.fill(if valid == 0 { 0 } else { labels[begun] });
-                continue;
-            }
-            for (bit, pixel) in pixels.iter_mut().enumerate() {
+        for (w, (&valid, &starts)) in valid.iter().zip(starts).enumerate() {
+            // Where runs and gaps start, each is painted as if it were the last: many pixels take no longer than few.
+            let mut rest = 1 | starts | (valid << 1 & !valid);
+            while rest != 0 {
+                let bit = rest.trailing_zeros();
+                rest &= rest - 1;
                 begun += (starts >> bit & 1) as usize;
-                *pixel = labels[begun] & ((valid >> bit & 1) as u16).wrapping_neg();
+                let label = if valid >> bit & 1 > 0 { labels[begun] } else { 0 };
+                let pixels = &mut row[64 * w + bit as usize..];
+                match pixels.first_chunk_mut::<64>() {
+                    Some(pixels) => pixels.fill(label),
+                    None => pixels.fill(label),
+                }
             }
         }
     }

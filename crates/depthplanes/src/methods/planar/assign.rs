@@ -103,7 +103,8 @@ fn assign_row(
 
 /// Blocks of a row that are looked at together, a multiple of which it has; the noise is taken to be the same in all that
 /// are labelled at a time.
-const STRETCH: usize = COLUMNS / BLOCK;
+const STRETCH: usize = 8;
+const _: () = assert!(COLUMNS.is_multiple_of(STRETCH * BLOCK));
 
 /// For each block from `first` on its region, if all tiles of it and of the blocks around it are of that one.
 #[inline(always)]
@@ -288,6 +289,13 @@ impl Block {
         for &id in ids {
             here[count] = self.local(id, planes);
             count += usize::from(self.measure(&here[count], &mut squares[count]));
+        }
+        if count < 2 {
+            let label = if count > 0 { planes.label(here[0].id) } else { 0 };
+            for at in 0..PIXELS {
+                labels[at] = if squares[0][at] <= 1.0 { label } else { 0 };
+            }
+            return;
         }
         beaten[..count].fill([0.0; PIXELS]);
         for j in 1..count {

@@ -8,8 +8,8 @@ use super::tiles::{LANES, SIDE};
 use crate::map::{DepthView, Pixel, Validity};
 use crate::noise::{Space, Steps};
 
-/// Columns that are summed at a time.
-pub(super) const COLUMNS: usize = LANES * SIDE;
+/// Columns of the coarsest cells that are summed at a time.
+pub(super) const COLUMNS: usize = LANES * ROWS;
 /// Rows of the coarsest cells.
 pub(super) const ROWS: usize = SIDE << (LEVELS - 1);
 

@@ -7,7 +7,7 @@ use super::bands::{cut, finer};
 use super::field::{Field, ROWS, fill_row};
 use super::grid::{Grid, GridRows, NONE};
 use super::planes::of_slope;
-use super::tiles::{SIDE, sum_cells, sum_tiles};
+use super::tiles::{HALVES, Pixels, SIDE, sum_cells, sum_tiles};
 use crate::group::vectorised;
 use crate::map::{DepthView, Pixel};
 use crate::noise::{NoiseModel, Space};
@@ -170,7 +170,7 @@ impl Part<'_> {
     #[inline(always)]
     fn sum<T: Pixel>(self, map: &DepthView<'_, T>, space: Space) -> usize {
         let Part { first, stride, q, cells: Cells { mut grids } } = self;
-        let mut valid = 0;
+        let (mut valid, mut pixels, mut halves) = (0, Pixels::NOTHING, HALVES);
         for (row, q) in q.chunks_exact_mut(ROWS * stride).enumerate() {
             let first = first + row * ROWS;
             for (v, q) in (first..map.height()).zip(q.chunks_exact_mut(stride)) {
@@ -178,7 +178,7 @@ impl Part<'_> {
             }
             let tiles = ROWS / SIDE;
             for (below, q) in q.chunks_exact(SIDE * stride).enumerate() {
-                sum_tiles(q, row * tiles + below, &mut grids[0]);
+                sum_tiles(q, row * tiles + below, &mut pixels, &mut halves, &mut grids[0]);
             }
             for level in 1..LEVELS {
                 let (finer, coarser) = grids.split_at_mut(level);

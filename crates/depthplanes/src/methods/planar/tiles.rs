@@ -4,26 +4,75 @@
 //! of a row are computed side by side, so the loops are plain arithmetic that the compiler turns into vectors.
 
 use super::grid::{GridRows, Sums, drift, limit};
-use std::array::from_fn;
 
 /// Columns and rows of a tile. The smallest plane has to hold a few; a tile's own plane should still
 /// mean something under noise. Of 4, 5, 6 and 8, 4 was the best on ABW and on made-up rooms.
 pub(super) const SIDE: usize = 4;
-/// Cells that are computed at a time.
-pub(super) const LANES: usize = 16;
+/// Cells that are computed at a time; a row of any size of cells has a multiple of them.
+pub(super) const LANES: usize = 8;
 /// One number of each of them.
 type Lanes = [f32; LANES];
 
 /// The middle of a tile's columns and rows from its own.
 const OFF: [f32; SIDE] = [-1.5, -0.5, 0.5, 1.5];
 
+/// Tiles of a row that are summed at a time.
+const PIECE: usize = 32 * LANES;
+
+/// Memory for the pixels of some tiles of a row.
+pub(super) struct Pixels {
+    /// For each place in a tile the pixels there, side by side.
+    by_place: [[[f32; PIECE]; SIDE]; SIDE],
+}
+
+impl Pixels {
+    pub(super) const NOTHING: Pixels = Pixels { by_place: [[[0.0; PIECE]; SIDE]; SIDE] };
+
+    /// The pixels of the tiles from one on.
+    #[inline(always)]
+    fn from(&self, at: usize) -> [[&Lanes; SIDE]; SIDE] {
+        let mut out = [[&[0.0; LANES]; SIDE]; SIDE];
+        for (out, pixels) in out.as_flattened_mut().iter_mut().zip(self.by_place.as_flattened()) {
+            *out = pixels[at..].first_chunk().expect("a multiple of so many");
+        }
+        out
+    }
+}
+
 /// Sums a row of tiles.
 #[inline(always)]
-pub(super) fn sum_tiles(q: &[f32], row: usize, grid: &mut GridRows<'_>) {
-    let mut rows = q.chunks_exact(q.len() / SIDE);
-    let rows: [_; SIDE] = from_fn(|_| rows.next().expect("so many rows").as_chunks::<{ LANES * SIDE }>().0);
-    for block in 0..rows[0].len() {
-        grid.put(row, block * LANES, tiles(from_fn(|row| &rows[row][block])));
+pub(super) fn sum_tiles(q: &[f32], row: usize, pixels: &mut Pixels, halves: &mut Halves, grid: &mut GridRows<'_>) {
+    let stride = q.len() / SIDE;
+    for first in (0..stride).step_by(SIDE * PIECE) {
+        let end = (first + SIDE * PIECE).min(stride);
+        for (q, by_column) in q.chunks_exact(stride).zip(&mut pixels.by_place) {
+            part_columns(&q[first..end], halves, by_column);
+        }
+        for at in (0..(end - first) / SIDE).step_by(LANES) {
+            grid.put(row, first / SIDE + at, tiles(pixels.from(at)));
+        }
+    }
+}
+
+/// Memory for the pixels of a row in even columns, and for those in odd ones.
+type Halves = [[f32; 2 * PIECE]; 2];
+pub(super) const HALVES: Halves = [[0.0; 2 * PIECE]; 2];
+
+/// Puts the first pixels of the tiles of a row side by side, the second ones, and so on: by halves, which processors have
+/// instructions for.
+#[inline(always)]
+fn part_columns(row: &[f32], [even, odd]: &mut Halves, [first, second, third, fourth]: &mut [[f32; PIECE]; SIDE]) {
+    let count = row.len() / 2;
+    part(row, even, odd);
+    part(&even[..count], first, third);
+    part(&odd[..count], second, fourth);
+}
+
+/// Parts numbers into those at even and those at odd places.
+#[inline(always)]
+fn part(numbers: &[f32], even: &mut [f32], odd: &mut [f32]) {
+    for ((pair, even), odd) in numbers.as_chunks::<2>().0.iter().zip(even).zip(odd) {
+        [*even, *odd] = *pair;
     }
 }
 
@@ -37,69 +86,104 @@ pub(super) fn sum_cells(parts: &GridRows<'_>, row: usize, side: usize, grid: &mu
     }
 }
 
-/// The sums of tiles that lie side by side.
+/// The sums of tiles that lie side by side, from each of their pixels.
 #[inline(always)]
-fn tiles(rows: [&[f32; LANES * SIDE]; SIDE]) -> Sums<Lanes> {
+fn tiles(pixels: [[&Lanes; SIDE]; SIDE]) -> Sums<Lanes> {
     // Where all pixels are valid, half of the sums are known.
-    let mut sums = [[0.0; LANES]; SIDE];
-    for (sums, row) in sums.iter_mut().zip(rows) {
-        row.as_chunks::<LANES>().0.iter().for_each(|part| (0..LANES).for_each(|lane| sums[lane] += part[lane]));
+    let mut sums = [0.0; LANES];
+    for pixels in pixels.as_flattened() {
+        (0..LANES).for_each(|t| sums[t] += pixels[t]);
     }
-    let is_whole = (0..LANES).fold(true, |all, lane| all & sums.map(|sums| sums[lane]).iter().sum::<f32>().is_finite());
-    if is_whole { tiles_of::<true>(rows) } else { tiles_of::<false>(rows) }
+    let is_whole = sums.iter().fold(true, |all, sum| all & sum.is_finite());
+    if is_whole { tiles_of::<true>(pixels) } else { tiles_of::<false>(pixels) }
 }
 
 #[inline(always)]
-fn tiles_of<const WHOLE: bool>(rows: [&[f32; LANES * SIDE]; SIDE]) -> Sums<Lanes> {
+fn tiles_of<const WHOLE: bool>(pixels: [[&Lanes; SIDE]; SIDE]) -> Sums<Lanes> {
     let mut out = no_sums();
     for t in 0..LANES {
         let mut q = [[0.0; SIDE]; SIDE];
         let mut w = [[0.0; SIDE]; SIDE];
-        let [mut n, mut u, mut v, mut uu, mut uv, mut vv, mut sum] = [0.0; 7];
         for row in 0..SIDE {
             for column in 0..SIDE {
-                let value = rows[row][t * SIDE + column];
+                let value = pixels[row][column][t];
                 let holds = WHOLE || value.is_finite();
                 w[row][column] = if holds { 1.0 } else { 0.0 };
                 q[row][column] = if holds { value } else { 0.0 };
-                let (w, du, dv) = (w[row][column], OFF[column], OFF[row]);
-                n += w;
-                u += w * du;
-                v += w * dv;
-                uu += w * (du * du);
-                uv += w * (du * dv);
-                vv += w * (dv * dv);
-                sum += q[row][column];
             }
         }
-        let mean = sum / if n > 0.0 { n } else { 1.0 };
-        let [mut rest, mut uq, mut vq] = [0.0; 3];
+        let places = places_of(&w);
+        let mean = total(&sums_of_rows(&q)) / if places[0] > 0.0 { places[0] } else { 1.0 };
         for row in 0..SIDE {
             for column in 0..SIDE {
-                let off = w[row][column] * (q[row][column] - mean);
-                rest += off;
-                uq += OFF[column] * off;
-                vq += OFF[row] * off;
+                q[row][column] = w[row][column] * (q[row][column] - mean);
             }
         }
-        let fit = plane([n, u, v, uu, uv, vv], [rest, uq, vq]);
+        let (of_rows, of_columns) = (sums_of_rows(&q), sums_of_rows(&turned(&q)));
+        let fit = plane(places, [total(&of_rows), along(&of_columns), along(&of_rows)]);
         let [a, b, c] = fit.abc;
-        let mut squares = 0.0;
         for row in 0..SIDE {
             for column in 0..SIDE {
-                let off = q[row][column] - mean - (a * OFF[column] + b * OFF[row] + c);
-                squares += w[row][column] * (off * off);
+                let off = q[row][column] - w[row][column] * (a * OFF[column] + c + b * OFF[row]);
+                q[row][column] = off * off;
             }
         }
+        let squares = total(&sums_of_rows(&q));
+        let [n, u, v, uu, uv, vv] = places;
         out.put(t, [n, u, v, uu, uv, vv, a, b, mean + c, squares, 0.0], fit.is_determined);
     }
     out
 }
 
+/// One number of each pixel of a tile.
+type Tile = [[f32; SIDE]; SIDE];
+
+/// Pixels of a tile, and sums over them of du, dv, du^2, du dv, dv^2, from 1 for each pixel and 0 for each that is missing.
+#[inline(always)]
+fn places_of(w: &Tile) -> [f32; 6] {
+    let (of_rows, of_columns) = (sums_of_rows(w), sums_of_rows(&turned(w)));
+    let mut across = [0.0; SIDE];
+    (0..SIDE).for_each(|row| across[row] = along(&w[row]));
+    [total(&of_rows), along(&of_columns), along(&of_rows), spread(&of_columns), along(&across), spread(&of_rows)]
+}
+
+#[inline(always)]
+fn turned(tile: &Tile) -> Tile {
+    let mut out = [[0.0; SIDE]; SIDE];
+    for row in 0..SIDE {
+        (0..SIDE).for_each(|column| out[column][row] = tile[row][column]);
+    }
+    out
+}
+
+#[inline(always)]
+fn sums_of_rows(tile: &Tile) -> [f32; SIDE] {
+    let mut out = [0.0; SIDE];
+    (0..SIDE).for_each(|row| out[row] = total(&tile[row]));
+    out
+}
+
+#[inline(always)]
+fn total([a, b, c, d]: &[f32; SIDE]) -> f32 {
+    (a + b) + (c + d)
+}
+
+/// Sum of four numbers times their places.
+#[inline(always)]
+fn along([a, b, c, d]: &[f32; SIDE]) -> f32 {
+    1.5 * (d - a) + 0.5 * (c - b)
+}
+
+/// Sum of four numbers times the squares of their places.
+#[inline(always)]
+fn spread([a, b, c, d]: &[f32; SIDE]) -> f32 {
+    2.25 * (a + d) + 0.25 * (b + c)
+}
+
 /// The sums of cells that lie side by side, from their parts in two rows.
 #[inline(always)]
 fn cells(parts: &Sums<&mut [f32]>, rows: [usize; 2], half: f32) -> Sums<Lanes> {
-    let part = |numbers: &[f32]| [some(&numbers[rows[0]..]), some(&numbers[rows[1]..])];
+    let part = |numbers| rows.map(|first| pairs(numbers, first));
     let (pn, pu, pv, puu, puv, pvv) =
         (part(parts.n), part(parts.u), part(parts.v), part(parts.uu), part(parts.uv), part(parts.vv));
     let (pa, pb, pc, psquares) = (part(parts.a), part(parts.b), part(parts.c), part(parts.squares));
@@ -154,15 +238,10 @@ fn cells(parts: &Sums<&mut [f32]>, rows: [usize; 2], half: f32) -> Sums<Lanes> {
     out
 }
 
-/// The first numbers; anything for those that are missing, which belong to no cell.
+/// The numbers of two parts for each cell.
 #[inline(always)]
-fn some(numbers: &[f32]) -> [f32; 2 * LANES] {
-    let mut out = [0.0; 2 * LANES];
-    match numbers.first_chunk::<{ 2 * LANES }>() {
-        Some(all) => out = *all,
-        None => out[..numbers.len()].copy_from_slice(numbers),
-    }
-    out
+fn pairs(numbers: &[f32], first: usize) -> &[f32; 2 * LANES] {
+    numbers[first..].first_chunk().expect("rows of so many parts")
 }
 
 /// The squares of a part, nothing for one without a plane, which has no pixels either.
@@ -183,16 +262,12 @@ impl Sums<Lanes> {
 }
 
 impl GridRows<'_> {
-    /// Writes the numbers of cells that lie side by side, as many as the row has.
+    /// Writes the numbers of cells that lie side by side.
     #[inline(always)]
     fn put(&mut self, row: usize, column: usize, mut sums: Sums<Lanes>) {
-        let (at, count) = (row * self.columns + column, (self.columns - column).min(LANES));
+        let at = row * self.columns + column;
         for (numbers, lanes) in self.sums.each().into_iter().zip(sums.each()) {
-            let numbers = &mut numbers[at..at + count];
-            match numbers.first_chunk_mut() {
-                Some(all) => *all = *lanes,
-                None => numbers.copy_from_slice(&lanes[..count]),
-            }
+            numbers[at..at + LANES].copy_from_slice(lanes);
         }
     }
 
