@@ -271,10 +271,25 @@ impl Groups {
         }
     }
 
+    /// Masks of row `v`, column u in bit u % 64 of word u / 64: its valid pixels, and those with which runs start. Beyond
+    /// the map there are none.
+    pub(crate) fn masks(&self, v: usize) -> [&[u64]; 2] {
+        match self.strips.get(v / self.strips[0].rows.len()) {
+            Some(strip) if strip.rows.contains(&v) => {
+                let words = strip.words_of(v - strip.rows.start);
+                [&strip.valid[words.clone()], &strip.starts[words]]
+            }
+            _ => [&[]; 2],
+        }
+    }
+
     /// The group of the pixel in column `u`, row `v`, which has to be valid and no single left out.
     #[inline(always)]
     pub(crate) fn at(&self, [u, v]: [usize; 2]) -> u32 {
-        let strip = &self.strips[v / self.strips[0].rows.len()];
+        let strip = match &self.strips[..] {
+            [only] => only,
+            strips => &strips[v / strips[0].rows.len()],
+        };
         let word = strip.words_of(v - strip.rows.start).start + u / 64;
         let label = strip.labels[strip.run_at(word, u64::MAX >> (63 - u % 64))];
         self.group_of_label[strip.first_label + label as usize]

@@ -326,19 +326,19 @@ impl Runner {
     /// [`planes::BENT`].
     fn assign(&mut self, noise: &NoiseModel, curved: bool, threads: usize) {
         let Runner { params, field, pyramid, regions, image, .. } = self;
-        image.resize(field.q.len() + pieces::slack(field.stride), 0);
+        image.resize(field.q.len(), 0);
         pyramid.hand_up();
         let [tiles, blocks, ..] = &pyramid.grids;
         let planes = params.planes(&regions.all, noise, curved);
-        assign::assign(field, [tiles, blocks], &planes, threads, &mut image[..field.q.len()]);
+        assign::assign(field, [tiles, blocks], &planes, threads, image);
     }
 
     /// Lets planes reach on, and lists those that touch.
     fn reach(&mut self, noise: &NoiseModel, threads: usize) {
         let Runner { params, field, pyramid, regions, image, seams, reach, contacts, .. } = self;
         let planes = params.planes(&regions.all, noise, false);
-        seams.find(&image[..field.q.len()], field.stride, threads);
-        contacts.list(seams, &image[..field.q.len()], threads);
-        reach.reach(field, &planes, seams, &pyramid.bands, &mut image[..field.q.len()], threads);
+        seams.find(image, field.stride, threads);
+        contacts.list(seams, image, threads);
+        reach.reach(field, &planes, seams, &pyramid.bands, image, threads);
     }
 }

@@ -6,21 +6,17 @@
 //! off while 29 % are (the thresholds of site percolation on the square lattice).
 
 use super::field::Field;
-use super::planes::BENT;
+use super::seams::bits;
 use crate::group::{Grouper, Groups, reserve_to, vectorised};
 use crate::parallel::in_rows;
 use std::ops::Range;
 
-/// Pixels of a row that are looked at together.
-const ABREAST: usize = 32;
-
-/// Pixels that have to follow an image of rows of `stride`, for what lies two rows and two columns on to be there.
-pub(super) fn slack(stride: usize) -> usize {
-    2 * stride + ABREAST
-}
-
 /// Rows of a part of the map; the parts are the same on any number of threads.
 const ROWS: usize = 64;
+
+/// The steps to pixels that are two off, each with those that lie between.
+const STEPS: [([isize; 2], [[isize; 2]; 2]); 4] =
+    [([2, 0], [[1, 0], [1, 0]]), ([0, 2], [[0, 1], [0, 1]]), ([1, 1], [[1, 0], [0, 1]]), ([-1, 1], [[-1, 0], [0, 1]])];
 
 /// Joins pieces; reuses its memory.
 #[derive(Debug, Default)]
@@ -39,7 +35,7 @@ struct Part {
 
 impl Pieces {
     /// Joins the groups of a region image, on as many threads, over missing pixels only: what was measured between and lies
-    /// on no plane parts them. The image is followed by [`slack`] pixels.
+    /// on no plane parts them.
     pub(super) fn join(&mut self, field: &Field, image: &[u16], grouper: &mut Grouper, threads: usize) {
         let Pieces { parts, pairs } = self;
         let groups = grouper.groups();
@@ -58,83 +54,65 @@ impl Pieces {
 impl Part {
     #[inline(always)]
     fn list(&mut self, rows: Range<usize>, field: &Field, image: &[u16], groups: &Groups) {
-        let Field { width, height, stride, ref q, .. } = *field;
-        let is_missing = |[u, v]: [usize; 2]| q[v * stride + u].is_nan();
-        let Part { pairs } = self;
         // On a chequered image every second pixel is two steps from four others.
-        reserve_to(pairs, 2 * ROWS * stride);
+        reserve_to(&mut self.pairs, 2 * ROWS * field.stride);
         for v in rows {
-            for start in (0..stride).step_by(ABREAST) {
-                let Some(apart) = find_apart(image, v * stride + start, stride) else { continue };
-                for (first, eight) in (start..).step_by(8).zip(apart.as_chunks::<8>().0) {
-                    let mut rest = u64::from_le_bytes(*eight);
-                    while rest != 0 {
-                        let shift = rest.trailing_zeros() & !7;
-                        let ways = (rest >> shift) as u8;
-                        rest &= !(0xff << shift);
-                        let u = first + shift as usize / 8;
-                        // Where each leads, and what lies between.
-                        let (right, below, left) = ([u + 1, v], [u, v + 1], [u.wrapping_sub(1), v]);
-                        let to = [
-                            ([u + 2, v], [right, right]),
-                            ([u, v + 2], [below, below]),
-                            ([u + 1, v + 1], [right, below]),
-                            ([u.wrapping_sub(1), v + 1], [left, below]),
-                        ];
-                        for (way, ([x, y], between)) in to.into_iter().enumerate() {
-                            let is_there = ways >> way & 1 > 0 && x < width && y < height;
-                            if is_there && between.into_iter().any(is_missing) {
-                                list(groups.at([u, v]), groups.at([x, y]), pairs);
-                            }
+            let [here, below, second] = [v, v + 1, v + 2].map(|v| groups.masks(v));
+            for word in 0..here[0].len() {
+                let [own, starts] = here.map(|row| row[word]);
+                let (right, under) = (ahead(here[0], word, 1), ahead(below[0], word, 0));
+                // A run goes on with the same label.
+                let goes_on = right & !ahead(here[1], word, 1);
+                let ways = [
+                    own & !right & ahead(here[0], word, 2),
+                    own & !under & ahead(second[0], word, 0),
+                    own & !goes_on & ahead(below[0], word, 1) & !(right & under),
+                    own & starts & behind(below[0], word) & !(behind(here[0], word) & under),
+                ];
+                for bit in bits(ways.iter().fold(0, |any, way| any | way)) {
+                    for (way, (to, between)) in ways.iter().zip(STEPS) {
+                        if way >> bit & 1 > 0 {
+                            self.list_pair([64 * word + bit, v], to, between, field, image, groups);
                         }
                     }
                 }
             }
         }
     }
+
+    /// Lists the groups of a pixel and of one two steps off, if they have one label and some pixel between is missing.
+    #[inline(always)]
+    fn list_pair(
+        &mut self,
+        from: [usize; 2],
+        to: [isize; 2],
+        between: [[isize; 2]; 2],
+        Field { q, stride, .. }: &Field,
+        image: &[u16],
+        groups: &Groups,
+    ) {
+        let place = |step: [isize; 2]| [0, 1].map(|axis| from[axis].wrapping_add_signed(step[axis]));
+        let at = |[u, v]: [usize; 2]| v * stride + u;
+        let is_missing = |step| q[at(place(step))].is_nan();
+        if image[at(from)] == image[at(place(to))] && between.into_iter().any(is_missing) {
+            let pair @ [a, b] = [from, place(to)].map(|place| groups.at(place));
+            if a != b && self.pairs.last() != Some(&pair) {
+                self.pairs.push(pair);
+            }
+        }
+    }
 }
 
-/// Lists two groups, if they are two.
+/// A word of a row's mask, every bit moved so many pixels to the left; 0 where there is no row.
 #[inline(always)]
-fn list(a: u32, b: u32, pairs: &mut Vec<[u32; 2]>) {
-    if a != b && pairs.last() != Some(&[a, b]) {
-        pairs.push([a, b]);
-    }
+fn ahead(row: &[u64], word: usize, by: usize) -> u64 {
+    let part = |word: usize| row.get(word).map_or(0, |&bits| u128::from(bits));
+    ((part(word) | part(word + 1) << 64) >> by) as u64
 }
 
-/// For each pixel from `at` on, as bits, which of the four that are two steps off, below or to the right, have its label
-/// where none between has; `None` where all have one label. What it says at the ends of a row and of the image may be wrong.
+/// The same, one pixel to the right.
 #[inline(always)]
-fn find_apart(image: &[u16], at: usize, stride: usize) -> Option<[u8; ABREAST]> {
-    let part = |first: usize| image[first..].first_chunk::<ABREAST>().expect("pixels that follow the image");
-    let (here, right, below) = (part(at), part(at + 1), part(at + stride));
-    let mut any = 0;
-    for i in 0..ABREAST {
-        any |= (here[i] ^ right[i]) | (here[i] ^ below[i]);
-    }
-    if any == 0 {
-        return None;
-    }
-    let (second, lower) = (part(at + 2), part(at + 2 * stride));
-    let (across, back) = (part(at + stride + 1), part(at + stride - 1));
-    let left = part(at.saturating_sub(1));
-    let (corner, foot) = (part(at + stride + 2), part(at + 2 * stride + 1));
-    let mut apart = [0; ABREAST];
-    for i in 0..ABREAST {
-        let own = here[i];
-        let is_plane = (own != 0) & (own != BENT);
-        let [by_right, by_below] = [right[i] != own, below[i] != own];
-        // Around a lone hole they are one group for sure.
-        let around = (below[i] == own) & (across[i] == own) & (corner[i] == own);
-        let beside = (right[i] == own) & (across[i] == own) & (foot[i] == own);
-        let to = [
-            by_right & (second[i] == own) & !around,
-            by_below & (lower[i] == own) & !beside,
-            by_right & by_below & (across[i] == own),
-            by_below & (left[i] != own) & (back[i] == own),
-        ];
-        let ways = u8::from(to[0]) | u8::from(to[1]) << 1 | u8::from(to[2]) << 2 | u8::from(to[3]) << 3;
-        apart[i] = if is_plane { ways } else { 0 };
-    }
-    Some(apart)
+fn behind(row: &[u64], word: usize) -> u64 {
+    let before = word.checked_sub(1).and_then(|word| row.get(word)).map_or(0, |before| before >> 63);
+    row.get(word).map_or(0, |bits| bits << 1) | before
 }
