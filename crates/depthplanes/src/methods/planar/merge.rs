@@ -85,8 +85,14 @@ impl Merger {
     ///
     /// # Errors
     /// [`Error::TooManyPlanes`] if more are left than a region image can tell apart.
-    pub(super) fn drop_small(&mut self, grid: &mut Grid, regions: &mut Regions, least: f64) -> Result<()> {
-        self.drop(grid, regions, |region| region.sums.n < least);
+    pub(super) fn drop_small(
+        &mut self,
+        grid: &mut Grid,
+        regions: &mut Regions,
+        least: f64,
+        threads: usize,
+    ) -> Result<()> {
+        self.drop(grid, regions, threads, |region| region.sums.n < least);
         match regions.all.len() {
             found if found >= MAX_PLANES =>
             // one label more is taken, [`super::planes::BENT`]
@@ -157,8 +163,14 @@ impl Merger {
         true
     }
 
-    /// Leaves out the regions that `goes` names or that were merged, and counts the others anew.
-    pub(super) fn drop(&mut self, grid: &mut Grid, regions: &mut Regions, mut goes: impl FnMut(&Region) -> bool) {
+    /// Leaves out the regions that `goes` names or that were merged, and counts the others anew. On as many threads.
+    pub(super) fn drop(
+        &mut self,
+        grid: &mut Grid,
+        regions: &mut Regions,
+        threads: usize,
+        mut goes: impl FnMut(&Region) -> bool,
+    ) {
         let Merger { pairs, into, order: number, .. } = self;
         number.clear();
         let mut kept = 0;
@@ -173,7 +185,9 @@ impl Merger {
         for id in 0..into.len() {
             into[id] = if into[id] as usize == id { number[id] } else { into[into[id] as usize] };
         }
-        grid.region.iter_mut().filter(|region| **region != NONE).for_each(|region| *region = into[*region as usize]);
+        let renumber =
+            |ids: &mut [u32]| ids.iter_mut().for_each(|id| *id = into.get(*id as usize).map_or(NONE, |&id| id));
+        in_parts(threads, &mut grid.region[..], renumber, |(), ()| ());
         let mut numbers = number.iter();
         regions.all.retain(|_| numbers.next() != Some(&NONE));
         into.clear();

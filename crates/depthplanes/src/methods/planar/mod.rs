@@ -292,7 +292,7 @@ impl Runner {
         watch(Moment::Grown, self, noise);
         self.merger.merge(&self.pyramid.grids[0], &mut self.regions, threads);
         watch(Moment::Merged, self, noise);
-        self.merger.drop_small(&mut self.pyramid.grids[0], &mut self.regions, self.params.least())
+        self.merger.drop_small(&mut self.pyramid.grids[0], &mut self.regions, self.params.least(), threads)
     }
 
     /// Which regions are no surface, and which of the others are curved.
@@ -300,7 +300,7 @@ impl Runner {
         let noise = optics.noise;
         let Runner { params, field, pyramid, regions, merger, facets, explainer, relief, .. } = self;
         facets.find_boxes(&pyramid.grids[0], regions);
-        pyramid.hand_up();
+        pyramid.hand_up(threads);
         let planes = params.planes(&regions.all, noise, false);
         let (Facets { bows, boxes, .. }, tiles) = (&mut *facets, &pyramid.grids[0]);
         side_by_side(
@@ -310,7 +310,7 @@ impl Runner {
         );
         let confidence = params.confidence;
         if relief.relieve(&mut pyramid.grids[0], regions, explainer, bows, boxes, confidence) {
-            pyramid.hand_up();
+            pyramid.hand_up(threads);
             bows.measure(pyramid, &regions.all);
             facets.find_boxes(&pyramid.grids[0], regions);
         }
@@ -319,7 +319,7 @@ impl Runner {
         let Runner { pyramid, regions, merger, explainer, .. } = self;
         let mut explained = explainer.is_explained.iter();
         let is_explained = |_: &Region| explained.next() == Some(&true);
-        merger.drop(&mut pyramid.grids[0], regions, is_explained);
+        merger.drop(&mut pyramid.grids[0], regions, threads, is_explained);
     }
 
     /// The region of every pixel: its plane, or its curved region; while planes are sought, all curved ones as
@@ -327,7 +327,7 @@ impl Runner {
     fn assign(&mut self, noise: &NoiseModel, curved: bool, threads: usize) {
         let Runner { params, field, pyramid, regions, image, .. } = self;
         image.resize(field.q.len(), 0);
-        pyramid.hand_up();
+        pyramid.hand_up(threads);
         let [tiles, blocks, ..] = &pyramid.grids;
         let planes = params.planes(&regions.all, noise, curved);
         assign::assign(field, [tiles, blocks], &planes, threads, image);

@@ -74,18 +74,44 @@ impl Pyramid {
         Cells { grids: self.grids.each_mut().map(Grid::whole) }
     }
 
-    /// Gives each coarse cell the region that its four parts agree on.
-    pub(super) fn hand_up(&mut self) {
+    /// Gives each coarse cell the region that its four parts agree on, on as many threads.
+    pub(super) fn hand_up(&mut self, threads: usize) {
         for level in 1..LEVELS {
             let (finer, coarser) = self.grids.split_at_mut(level);
             let (parts, grid) = (&finer[level - 1], &mut coarser[0]);
-            for (row, cells) in grid.region.chunks_exact_mut(grid.columns).enumerate() {
-                let above = parts.region[2 * row * parts.columns..].as_chunks::<2>().0;
-                let below = parts.region[(2 * row + 1) * parts.columns..].as_chunks::<2>().0;
-                for (cell, (above, below)) in cells.iter_mut().zip(above.iter().zip(below)) {
-                    let id = above[0];
-                    *cell = if [above[1], below[0], below[1]] == [id; 3] { id } else { NONE };
-                }
+            let rows = CellRows { first: 0, columns: grid.columns, region: &mut grid.region };
+            in_parts(threads, rows, |rows| rows.hand_up(parts), |(), ()| ());
+        }
+    }
+}
+
+/// The regions of some rows of cells.
+struct CellRows<'a> {
+    first: usize,
+    columns: usize,
+    region: &'a mut [u32],
+}
+
+impl Rows for CellRows<'_> {
+    fn rows(&self) -> usize {
+        self.region.len() / self.columns
+    }
+
+    fn cut(self, rows: usize) -> (Self, Self) {
+        let CellRows { first, columns, region } = self;
+        let (above, below) = region.split_at_mut(rows * columns);
+        (CellRows { first, columns, region: above }, CellRows { first: first + rows, columns, region: below })
+    }
+}
+
+impl CellRows<'_> {
+    fn hand_up(self, parts: &Grid) {
+        for (row, cells) in (self.first..).zip(self.region.chunks_exact_mut(self.columns)) {
+            let above = parts.region[2 * row * parts.columns..].as_chunks::<2>().0;
+            let below = parts.region[(2 * row + 1) * parts.columns..].as_chunks::<2>().0;
+            for (cell, (above, below)) in cells.iter_mut().zip(above.iter().zip(below)) {
+                let id = above[0];
+                *cell = if [above[1], below[0], below[1]] == [id; 3] { id } else { NONE };
             }
         }
     }
