@@ -8,8 +8,9 @@ mod distances;
 mod parts;
 mod tally;
 
-use crate::camera::{Intrinsics, Measure, Sensor};
+use crate::camera::{Measure, Sensor};
 use crate::detection::{MapFit, Plane, share};
+use crate::fit::AffineFit;
 use crate::group::vectorised;
 use crate::map::{DepthView, Pixel};
 use crate::noise::NoiseModel;
@@ -136,14 +137,29 @@ impl Describer {
         self.distances.clear();
         match (sensor.intrinsics, sensor.measure) {
             (Some(camera), Measure::Depth { metres }) => {
-                self.measure_distances(map, runs, threads, None, |value| metres * value.into());
+                let depth_m = |value: T| metres * value.into();
+                self.measure_distances(
+                    map,
+                    runs,
+                    threads,
+                    #[inline(always)]
+                    |distances, run, values, plane| distances.add_depths(run, values, plane, depth_m),
+                );
                 for (distances, tally) in self.distances.iter_mut().zip(&self.tallies) {
                     distances.point = tally.points(metres, &camera);
                 }
             }
             (Some(camera), Measure::InverseDepth { slope, offset }) => {
-                let depth_m = |value: T| (slope * value.into() + offset).recip();
-                self.measure_distances(map, runs, threads, Some(&camera), depth_m);
+                let inverse_depth = |value: T| slope * value.into() + offset;
+                self.measure_distances(
+                    map,
+                    runs,
+                    threads,
+                    #[inline(always)]
+                    |distances, run, values, plane| {
+                        distances.add_inverse_depths(run, values, plane, &camera, inverse_depth);
+                    },
+                );
             }
             _ => (),
         }
@@ -163,14 +179,13 @@ impl Describer {
         }));
     }
 
-    /// Sums what the records need of every pixel's depth; its point only with a camera.
+    /// Sums what the records need of every pixel's depth; `add` adds those of a run and its plane.
     fn measure_distances<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
         runs: &[LabelledRun],
         threads: usize,
-        camera: Option<&Intrinsics>,
-        depth_m: impl Fn(T) -> f64 + Sync,
+        add: impl Fn(&mut Distances, &LabelledRun, &[T], &AffineFit) + Sync,
     ) {
         let tallies = std::mem::take(&mut self.tallies);
         self.each_part(map, runs, threads, |part, runs, room| {
@@ -181,7 +196,7 @@ impl Describer {
                     for run in runs {
                         if let Some(plane) = &tallies[usize::from(run.label) - 1].inverse_depth {
                             let distances = part.distances.of(run.label, Distances::default);
-                            distances.add(run, run.of(map), plane, camera, &depth_m);
+                            add(distances, run, run.of(map), plane);
                         }
                     }
                 },

@@ -23,18 +23,16 @@ pub(super) struct Distances {
 }
 
 impl Distances {
-    /// Adds a run of pixels; their points only with a camera.
+    /// Adds a run of pixels by their depths, metres; not their points.
     #[inline(always)]
-    pub(super) fn add<T: Pixel>(
+    pub(super) fn add_depths<T: Pixel>(
         &mut self,
         run: &LabelledRun,
         values: &[T],
         plane: &AffineFit,
-        camera: Option<&Intrinsics>,
         depth_m: impl Fn(T) -> f64,
     ) {
-        let (u, v) = (f64::from(run.u_first), f64::from(run.v));
-        let (first, slope) = (plane.at(u, v), plane.abc[0]);
+        let (first, slope) = (plane.at(run.u_first.into(), run.v.into()), plane.abc[0]);
         let mut squares = [0.0; LANES];
         in_lanes(
             values,
@@ -43,28 +41,48 @@ impl Distances {
             |_, relative| (0..LANES).for_each(|lane| squares[lane] += relative[lane] * relative[lane]),
         );
         (0..LANES).for_each(|lane| self.squares[lane] += squares[lane]);
-        let is_behind = |z: f64| !(z > 0.0 && z < f64::INFINITY);
-        if !T::IS_INTEGER || camera.is_some() {
+        // Whole numbers that are valid are more than 0.
+        if !T::IS_INTEGER {
+            let is_behind = |depth: f64| !(depth > 0.0 && depth < f64::INFINITY);
             self.behind_infinity |= values.iter().fold(false, |any, &value| any | is_behind(depth_m(value)));
         }
-        if let Some(camera) = camera {
-            let mut sums = [[0.0; LANES]; 2];
-            in_lanes(
-                values,
-                |_, value| depth_m(value),
-                #[inline(always)]
-                |k, depth| {
-                    for lane in 0..LANES {
-                        sums[0][lane] += depth[lane];
-                        sums[1][lane] += k[lane] * depth[lane];
-                    }
-                },
-            );
-            let ([depth, by_k], ray) = (sums.map(|lanes| lanes.iter().sum::<f64>()), camera.ray(u, v));
-            self.point[0] += ray[0] * depth + by_k / camera.fx;
-            self.point[1] += ray[1] * depth;
-            self.point[2] += depth;
-        }
+        self.add_area(run, plane);
+    }
+
+    /// Adds a run of pixels and their points by their inverse depths, 1/m.
+    #[inline(always)]
+    pub(super) fn add_inverse_depths<T: Pixel>(
+        &mut self,
+        run: &LabelledRun,
+        values: &[T],
+        plane: &AffineFit,
+        camera: &Intrinsics,
+        inverse_depth: impl Fn(T) -> f64,
+    ) {
+        let (u, v) = (f64::from(run.u_first), f64::from(run.v));
+        let (first, slope) = (plane.at(u, v), plane.abc[0]);
+        let [mut squares, mut depths, mut by_k] = [[0.0; LANES]; 3];
+        in_lanes(
+            values,
+            |_, value| inverse_depth(value),
+            #[inline(always)]
+            |k, q| {
+                for lane in 0..LANES {
+                    let depth = if q[lane] == 0.0 { 0.0 } else { 1.0 / q[lane] }; // 0 for a lane without a pixel
+                    let relative = depth * (q[lane] - (first + slope * k[lane]));
+                    squares[lane] += relative * relative;
+                    depths[lane] += depth;
+                    by_k[lane] += k[lane] * depth;
+                }
+            },
+        );
+        (0..LANES).for_each(|lane| self.squares[lane] += squares[lane]);
+        let is_behind = |q: f64| !(q >= f64::MIN_POSITIVE && q < f64::INFINITY);
+        self.behind_infinity |= values.iter().fold(false, |any, &value| any | is_behind(inverse_depth(value)));
+        let ([depth, by_k], ray) = ([depths, by_k].map(|lanes| lanes.iter().sum::<f64>()), camera.ray(u, v));
+        self.point[0] += ray[0] * depth + by_k / camera.fx;
+        self.point[1] += ray[1] * depth;
+        self.point[2] += depth;
         self.add_area(run, plane);
     }
 

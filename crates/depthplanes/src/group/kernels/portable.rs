@@ -29,8 +29,16 @@ impl Isa for Portable {
     fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]) {
         let mut begun = 0;
         for (w, (&valid, &starts)) in valid.iter().zip(starts).enumerate() {
-            // Where runs and gaps start, each is painted as if it were the last: many pixels take no longer than few.
+            // Where runs and gaps start.
             let mut rest = 1 | starts | (valid << 1 & !valid);
+            if rest.count_ones() > MANY {
+                for (bit, pixel) in row[64 * w..].iter_mut().take(64).enumerate() {
+                    begun += (starts >> bit & 1) as usize;
+                    *pixel = labels[begun] & ((valid >> bit & 1) as u16).wrapping_neg();
+                }
+                continue;
+            }
+            // Each is painted as if it were the last: many pixels take no longer than few.
             while rest != 0 {
                 let bit = rest.trailing_zeros();
                 rest &= rest - 1;
@@ -45,6 +53,9 @@ impl Isa for Portable {
         }
     }
 }
+
+/// Runs and gaps of 64 pixels from which on these are painted one by one.
+const MANY: u32 = 16;
 
 /// Masks of a row: flags in bytes, which vectorises, then eight bytes to eight bits.
 #[inline(always)]
