@@ -6,12 +6,14 @@
 
 use super::assign::{DU, DV, Local, PIXELS, Pixels};
 use super::grow::Region;
-use super::tiles::LANES;
 
 /// A block's pixels are not parted by a line if they lie nearer to one of the planes by so much, squares in units of
 /// `Local::most`: by as much, all together, as one pixel may lie off. The line is known no better than the planes,
 /// and beyond the end of a crease it means nothing.
 const BELIED: f32 = 1.0;
+
+/// Pixels that are looked at together.
+const ABREAST: usize = 16;
 
 /// Which of two planes within reach gets a pixel: the first where the line is positive, or else the nearer.
 pub(super) struct Rule {
@@ -68,9 +70,9 @@ impl Rule {
     #[inline(always)]
     fn belied(&self, [one, other]: [&Pixels<f32>; 2]) -> f32 {
         // What it adds to the squares if one of them gets all.
-        let [mut by_one, mut by_other] = [[0.0; LANES]; 2];
-        for first in (0..PIXELS).step_by(LANES) {
-            for lane in 0..LANES {
+        let [mut by_one, mut by_other] = [[0.0; ABREAST]; 2];
+        for first in (0..PIXELS).step_by(ABREAST) {
+            for lane in 0..ABREAST {
                 let at = first + lane;
                 let more = if is_near_both(one[at], other[at]) { one[at] - other[at] } else { 0.0 };
                 let is_one = self.line(at) > 0.0;
