@@ -263,12 +263,21 @@ impl Groups {
 
     /// Calls `visit` for each run in raster order.
     pub fn each_run(&self, mut visit: impl FnMut(Run)) {
-        for strip in &self.strips {
-            let groups = &self.group_of_label[strip.first_label..];
-            strip.each_run(|v, u_first, u_last, label| {
-                visit(Run { v: v as u32, u_first, u_last, group: groups[label as usize] });
-            });
-        }
+        (0..self.strips.len()).for_each(|strip| self.each_run_of(strip, &mut visit));
+    }
+
+    /// Strips of rows that the map is cut into, by its size alone, and the most pixels of one.
+    pub(crate) fn strips(&self) -> [usize; 2] {
+        [self.strips.len(), self.strips[0].rows.len() * self.width]
+    }
+
+    /// Calls `visit` for each run of a strip in raster order.
+    pub(crate) fn each_run_of(&self, strip: usize, mut visit: impl FnMut(Run)) {
+        let strip = &self.strips[strip];
+        let groups = &self.group_of_label[strip.first_label..];
+        strip.each_run(|v, u_first, u_last, label| {
+            visit(Run { v: v as u32, u_first, u_last, group: groups[label as usize] });
+        });
     }
 
     /// Masks of row `v`, column u in bit u % 64 of word u / 64: its valid pixels, and those with which runs start. Beyond

@@ -79,6 +79,17 @@ pub(super) struct Facets {
     pub(super) boxes: Vec<CellBox>,
     /// For each region what shows that it is a facet of a curved surface, if anything.
     pub(super) signs: Vec<Option<Sign>>,
+    /// For each pair.
+    joints: Vec<Option<SmoothJoint>>,
+}
+
+/// Two regions through which one quadratic runs.
+#[derive(Clone, Copy, Debug)]
+struct SmoothJoint {
+    small: u32,
+    large: u32,
+    /// Pixels of the larger one that were seen.
+    seen: f64,
 }
 
 /// What shows that a region is a facet of a curved surface.
@@ -114,12 +125,6 @@ struct Scene<'a> {
 }
 
 impl Facets {
-    /// Finds the columns and rows of every region.
-    pub(super) fn find_boxes(&mut self, grid: &Grid, regions: &Regions) {
-        reserve_to(&mut self.boxes, grid.len());
-        find_boxes(grid, regions.all.len(), &mut self.boxes);
-    }
-
     /// Marks the regions that are facets of a curved surface. Strips across a crease (`is_strip`) are no facets, and say
     /// nothing of others: through a strip and a narrow plane beside it there often is a quadratic. On as many threads.
     pub(super) fn mark(
@@ -133,26 +138,12 @@ impl Facets {
     ) {
         let cells = pyramid.grids[0].len();
         reserve_to(&mut self.signs, cells);
-        let Facets { bows, boxes, signs } = self;
-        signs.clear();
+        reserve_to(&mut self.joints, 4 * cells);
+        let Facets { bows, boxes, signs, joints } = self;
         let is_bowed = |(id, is_strip): (u32, &bool)| !is_strip && bows.is_bowed(id);
         signs.extend((0..).zip(is_strip).map(|region| is_bowed(region).then_some(Sign::Bow)));
         let scene = Scene { pyramid, all: &regions.all, noise, is_strip, boxes, bows };
-        for pair in pairs.iter().filter(|pair| !scene.has_strip(pair) && !scene.are_apart(pair)) {
-            let [a, b] = pair.ids;
-            let is_larger = boxes[a as usize].area() < boxes[b as usize].area();
-            let [small, large] = if is_larger { [a, b] } else { [b, a] };
-            let is_known = [small, large].iter().all(|&id| signs[id as usize].is_some());
-            if is_known || scene.is_sharp(small, large) || bows.gain(small) + bows.gain(large) < GAIN {
-                continue;
-            }
-            if let Some(seen) = scene.joint(small, |id| id == large).is_smooth() {
-                signs[small as usize].get_or_insert(Sign::Joint(large));
-                if 2.0 * seen >= regions.all[large as usize].sums.n {
-                    signs[large as usize].get_or_insert(Sign::Joint(small));
-                }
-            }
-        }
+        scene.find_joints(pairs, joints, signs, threads);
         let look_around = |part: Numbered<'_, Option<Sign>>| {
             for (id, sign) in (part.first..).zip(part.all).filter(|(id, sign)| sign.is_none() && !is_strip[*id]) {
                 let pixels = scene.all[id].sums.n;
@@ -178,6 +169,45 @@ pub(super) fn are_apart(all: &[Region], noise: &NoiseModel, pair: &Pair) -> bool
 }
 
 impl Scene<'_> {
+    /// Marks the regions through which and a neighbour one quadratic runs. On as many threads.
+    fn find_joints(
+        &self,
+        pairs: &[Pair],
+        joints: &mut Vec<Option<SmoothJoint>>,
+        signs: &mut [Option<Sign>],
+        threads: usize,
+    ) {
+        joints.resize(pairs.len(), None);
+        let look_along = |part: Numbered<'_, Option<SmoothJoint>>| {
+            for (pair, joint) in pairs[part.first..].iter().zip(part.all) {
+                *joint = self.smooth_joint(pair, signs);
+            }
+        };
+        in_parts(threads, Numbered { first: 0, all: &mut joints[..] }, look_along, |(), ()| ());
+        for &SmoothJoint { small, large, seen } in joints.iter().flatten() {
+            signs[small as usize].get_or_insert(Sign::Joint(large));
+            if 2.0 * seen >= self.all[large as usize].sums.n {
+                signs[large as usize].get_or_insert(Sign::Joint(small));
+            }
+        }
+    }
+
+    /// The regions of a pair, if one quadratic runs through both; none if it is known of both that they are curved.
+    fn smooth_joint(&self, pair: &Pair, signs: &[Option<Sign>]) -> Option<SmoothJoint> {
+        if self.has_strip(pair) || self.are_apart(pair) {
+            return None;
+        }
+        let [a, b] = pair.ids;
+        let is_larger = self.boxes[a as usize].area() < self.boxes[b as usize].area();
+        let [small, large] = if is_larger { [a, b] } else { [b, a] };
+        let is_known = [small, large].iter().all(|&id| signs[id as usize].is_some());
+        if is_known || self.is_sharp(small, large) || self.bows.gain(small) + self.bows.gain(large) < GAIN {
+            return None;
+        }
+        let seen = self.joint(small, |id| id == large).is_smooth()?;
+        Some(SmoothJoint { small, large, seen })
+    }
+
     /// Whether one of two regions is a strip across a crease.
     fn has_strip(&self, pair: &Pair) -> bool {
         pair.ids.iter().any(|&id| self.is_strip[id as usize])
@@ -259,9 +289,10 @@ impl Scene<'_> {
     }
 }
 
-fn find_boxes(grid: &Grid, regions: usize, boxes: &mut Vec<CellBox>) {
-    boxes.clear();
-    boxes.resize(regions, CellBox::NOTHING);
+/// Finds the columns and rows of every region.
+pub(super) fn find_boxes(grid: &Grid, all: &[Region], boxes: &mut Vec<CellBox>) {
+    reserve_to(boxes, grid.len());
+    boxes.resize(all.len(), CellBox::NOTHING);
     for (row, ids) in grid.region.chunks_exact(grid.columns).enumerate() {
         each_run(ids, 0, |id, columns| boxes[id as usize].include([columns.start, columns.end - 1], row));
     }

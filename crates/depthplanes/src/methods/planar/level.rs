@@ -11,11 +11,17 @@ use crate::noise::{Blocks, NoiseModel, SensorNoise, Slants, Space, Tiled, VALID}
 /// Memory of this stage.
 #[derive(Debug, Default)]
 pub(super) struct Level {
-    blocks: Blocks,
-    slants: Slants,
+    pub(super) scatter: Scatter,
+    pub(super) rays: Rays,
 }
 
-impl Level {
+/// Memory for the noise.
+#[derive(Debug, Default)]
+pub(super) struct Scatter {
+    blocks: Blocks,
+}
+
+impl Scatter {
     /// The noise that explains the scatter of a map, rounding included.
     pub(super) fn estimate(&mut self, grid: &Grid, space: Space) -> SensorNoise {
         self.blocks.prepare(grid.len().div_ceil(Slants::stride(grid.len())));
@@ -29,10 +35,18 @@ impl Level {
         }
         self.blocks.noise(space).0
     }
+}
 
+/// Memory for the ray.
+#[derive(Debug, Default)]
+pub(super) struct Rays {
+    slants: Slants,
+}
+
+impl Rays {
     /// How well rays are known, pixels, the noise being the stated one if there is one; `step` is that of the values, map
     /// units.
-    pub(super) fn ray(&mut self, pyramid: &Pyramid, stated: Option<&NoiseModel>, space: Space, step: f64) -> f64 {
+    pub(super) fn estimate(&mut self, pyramid: &Pyramid, stated: Option<&NoiseModel>, space: Space, step: f64) -> f64 {
         let [tiles, .., cells] = &pyramid.grids;
         let stride = Slants::stride(cells.len());
         self.slants.prepare(cells.len().div_ceil(stride));

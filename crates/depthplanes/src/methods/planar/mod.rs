@@ -278,9 +278,14 @@ impl Runner {
         pyramid.sum(map, space, job.threads, field);
         let model = |noise| NoiseModel::new(sensor.measure, noise, field.step);
         let stated = stated(space, params.noise, params.noise_growth).or(sensor.noise).and_then(model);
-        let ray = if params.ray > 0.0 { params.ray } else { level.ray(pyramid, stated.as_ref(), space, field.step) };
-        let estimated = || Some(model(level.estimate(&pyramid.grids[LEVELS - 1], space))?.of_scatter());
-        stated.or_else(estimated).expect("an estimate is of the map's own kind").with_ray(ray)
+        let Level { scatter, rays } = level;
+        let estimated = || Some(model(scatter.estimate(&pyramid.grids[LEVELS - 1], space))?.of_scatter());
+        let (noise, ray) = side_by_side(
+            job.threads,
+            || stated.or_else(estimated).expect("an estimate is of the map's own kind"),
+            || if params.ray > 0.0 { params.ray } else { rays.estimate(pyramid, stated.as_ref(), space, field.step) },
+        );
+        noise.with_ray(ray)
     }
 
     /// Regions of cells on one plane.
@@ -299,20 +304,25 @@ impl Runner {
     fn judge(&mut self, optics: Optics<'_>, threads: usize, watch: &mut Watch<'_>) {
         let noise = optics.noise;
         let Runner { params, field, pyramid, regions, merger, facets, explainer, relief, .. } = self;
-        facets.find_boxes(&pyramid.grids[0], regions);
         pyramid.hand_up(threads);
         let planes = params.planes(&regions.all, noise, false);
         let (Facets { bows, boxes, .. }, tiles) = (&mut *facets, &pyramid.grids[0]);
         side_by_side(
             threads,
-            || explainer.find(field, tiles, &planes, &merger.pairs, boxes, threads),
+            || {
+                curved::find_boxes(tiles, &regions.all, boxes);
+                explainer.find(field, tiles, &planes, &merger.pairs, boxes, threads);
+            },
             || bows.measure(pyramid, &regions.all),
         );
         let confidence = params.confidence;
         if relief.relieve(&mut pyramid.grids[0], regions, explainer, bows, boxes, confidence) {
             pyramid.hand_up(threads);
-            bows.measure(pyramid, &regions.all);
-            facets.find_boxes(&pyramid.grids[0], regions);
+            side_by_side(
+                threads,
+                || bows.measure(pyramid, &regions.all),
+                || curved::find_boxes(&pyramid.grids[0], &regions.all, boxes),
+            );
         }
         facets.mark(pyramid, regions, &merger.pairs, &explainer.is_explained, optics, threads);
         watch(Moment::Judged, self, noise);

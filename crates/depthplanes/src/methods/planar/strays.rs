@@ -8,7 +8,7 @@ use super::field::Field;
 use super::grid::limit;
 use super::planes::{BENT, Planes};
 use crate::group::{Grouper, Groups, Run, reserve_to};
-use crate::parallel::in_parts;
+use crate::parallel::{Numbered, in_parts};
 use std::ops::Range;
 
 /// Parts with nearly as many pixels each that strays are shared out to.
@@ -19,7 +19,9 @@ const PARTS: usize = 16;
 pub(super) struct Strays {
     /// Pixels of the map.
     pixels: usize,
-    /// Runs of small groups in raster order.
+    /// For each strip of the map its runs of small groups.
+    by_strip: Vec<Vec<Run>>,
+    /// All of them in raster order.
     runs: Vec<Run>,
     /// The same by group: the group, and behind it the run.
     by_group: Vec<u64>,
@@ -61,7 +63,7 @@ impl Strays {
         grouper: &mut Grouper,
         threads: usize,
     ) {
-        self.list(field, min, grouper.groups());
+        self.list(field, min, grouper.groups(), threads);
         self.share_out(min);
         let Strays { runs, by_group, parts, pairs, .. } = self;
         let around = Around { field, image, planes, groups: grouper.groups(), min };
@@ -97,18 +99,27 @@ impl Strays {
         }
     }
 
-    fn list(&mut self, field: &Field, min: u32, groups: &Groups) {
-        let Strays { pixels, runs, by_group, pairs, .. } = self;
+    fn list(&mut self, field: &Field, min: u32, groups: &Groups, threads: usize) {
+        let Strays { pixels, by_strip, runs, by_group, pairs, .. } = self;
         *pixels = field.width * field.height;
         reserve_to(runs, *pixels);
         reserve_to(by_group, *pixels);
         reserve_to(pairs, 4 * *pixels);
-        groups.each_run(|run| {
-            if groups.sizes()[run.group as usize] <= min {
-                by_group.push(u64::from(run.group) << 32 | runs.len() as u64);
-                runs.push(run);
+        let [strips, most] = groups.strips();
+        by_strip.resize_with(strips, Vec::new);
+        let list = |strips: Numbered<'_, Vec<Run>>| {
+            for (strip, runs) in (strips.first..).zip(strips.all) {
+                reserve_to(runs, most);
+                groups.each_run_of(strip, |run| {
+                    if groups.sizes()[run.group as usize] <= min {
+                        runs.push(run);
+                    }
+                });
             }
-        });
+        };
+        in_parts(threads, Numbered { first: 0, all: &mut by_strip[..] }, list, |(), ()| ());
+        by_strip.iter().for_each(|strip| runs.extend(strip));
+        by_group.extend((0..).zip(&*runs).map(|(at, run): (u64, _)| u64::from(run.group) << 32 | at));
         by_group.sort_unstable();
     }
 }
