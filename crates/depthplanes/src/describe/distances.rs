@@ -77,7 +77,7 @@ impl Distances {
             },
         );
         (0..LANES).for_each(|lane| self.squares[lane] += squares[lane]);
-        let is_behind = |q: f64| !(q >= f64::MIN_POSITIVE && q < f64::INFINITY);
+        let is_behind = |q: f64| !(f64::MIN_POSITIVE..f64::INFINITY).contains(&q);
         self.behind_infinity |= values.iter().fold(false, |any, &value| any | is_behind(inverse_depth(value)));
         let ([depth, by_k], ray) = ([depths, by_k].map(|lanes| lanes.iter().sum::<f64>()), camera.ray(u, v));
         self.point[0] += ray[0] * depth + by_k / camera.fx;

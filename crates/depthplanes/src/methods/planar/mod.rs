@@ -17,6 +17,7 @@ mod grid;
 mod grow;
 mod level;
 mod merge;
+mod near;
 mod pieces;
 mod planes;
 mod pyramid;

@@ -3,10 +3,10 @@
 //! In: a run at its [`Moment`]s, and what came of it. Out: findings for an explanation. What the stages leave in their buffers
 //! is read as they go; nothing is kept for it in an ordinary run.
 
-use super::assign::{self, Held};
 use super::curved::Sign;
 use super::grid::{Grid, NONE};
 use super::grow::{Region, fewest};
+use super::near::{self, Held};
 use super::pieces::Pieces;
 use super::planes::{self, BENT};
 use super::{Moment, Runner};
@@ -282,7 +282,7 @@ impl Seen {
     /// Which planes the pixel is held against, and how far off it is.
     fn look_at_planes(&mut self, run: &Runner, noise: &NoiseModel) {
         let [tiles, blocks, ..] = &run.pyramid.grids;
-        let Held { ids, middle, factor } = assign::held_against([tiles, blocks], self.at);
+        let Held { ids, middle, factor } = near::held_against([tiles, blocks], self.at);
         let [u, v] = self.at.map(|place| place as f64);
         self.most = factor * run.params.confidence;
         let label = run.image[self.at[1] * run.field.stride + self.at[0]];
