@@ -20,7 +20,7 @@ use distances::Distances;
 use parts::{ByLabel, runs_of_parts};
 use std::ops::Range;
 pub use tally::Tally;
-use tally::{Margin, Sums, reciprocal, sum};
+use tally::{Margin, Sums, sum};
 
 /// Describes planes; reuses its memory from map to map.
 #[derive(Debug, Default)]
@@ -64,7 +64,7 @@ impl Describer {
         let inverse = match (sensor.intrinsics, sensor.measure) {
             (Some(_), Measure::Depth { metres }) => {
                 let per_metre = 1.0 / metres;
-                Some(move |value: T| per_metre * reciprocal(value))
+                Some(move |value: T| per_metre / value.into())
             }
             _ => None,
         };
@@ -137,13 +137,12 @@ impl Describer {
         self.distances.clear();
         match (sensor.intrinsics, sensor.measure) {
             (Some(camera), Measure::Depth { metres }) => {
-                let depth_m = |value: T| metres * value.into();
                 self.measure_distances(
                     map,
                     runs,
                     threads,
                     #[inline(always)]
-                    |distances, run, values, plane| distances.add_depths(run, values, plane, depth_m),
+                    |distances, run, values, plane| distances.add_depths(run, values, plane, metres),
                 );
                 for (distances, tally) in self.distances.iter_mut().zip(&self.tallies) {
                     distances.point = tally.points(metres, &camera);

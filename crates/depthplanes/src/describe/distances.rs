@@ -23,20 +23,14 @@ pub(super) struct Distances {
 }
 
 impl Distances {
-    /// Adds a run of pixels by their depths, metres; not their points.
+    /// Adds a run of pixels by their depths, of which a unit is so many metres; not their points.
     #[inline(always)]
-    pub(super) fn add_depths<T: Pixel>(
-        &mut self,
-        run: &LabelledRun,
-        values: &[T],
-        plane: &AffineFit,
-        depth_m: impl Fn(T) -> f64,
-    ) {
-        let (first, slope) = (plane.at(run.u_first.into(), run.v.into()), plane.abc[0]);
+    pub(super) fn add_depths<T: Pixel>(&mut self, run: &LabelledRun, values: &[T], plane: &AffineFit, metres: f64) {
+        let (first, slope) = (metres * plane.at(run.u_first.into(), run.v.into()), metres * plane.abc[0]);
         let mut squares = [0.0; LANES];
         in_lanes(
             values,
-            |k, value| 1.0 - depth_m(value) * (first + slope * k), // z (q - q of the plane)
+            |k, value| 1.0 - value.into() * (first + slope * k), // z (q - q of the plane)
             #[inline(always)]
             |_, relative| (0..LANES).for_each(|lane| squares[lane] += relative[lane] * relative[lane]),
         );
@@ -44,7 +38,7 @@ impl Distances {
         // Whole numbers that are valid are more than 0.
         if !T::IS_INTEGER {
             let is_behind = |depth: f64| !(depth > 0.0 && depth < f64::INFINITY);
-            self.behind_infinity |= values.iter().fold(false, |any, &value| any | is_behind(depth_m(value)));
+            self.behind_infinity |= values.iter().fold(false, |any, &value| any | is_behind(metres * value.into()));
         }
         self.add_area(run, plane);
     }

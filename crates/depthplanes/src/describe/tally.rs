@@ -49,18 +49,6 @@ pub(super) struct Sums {
     inverse: Quantity<ValueSums>,
 }
 
-/// 1 / value, to within some units of the last place. Single precision and one step of Newton's method take a third of
-/// the time of a division; only whole numbers are sure to stay within its range.
-#[inline(always)]
-pub(super) fn reciprocal<T: Pixel>(value: T) -> f64 {
-    let wide: f64 = value.into();
-    if !T::IS_INTEGER {
-        return 1.0 / wide;
-    }
-    let near = f64::from(1.0 / value.to_f32());
-    near * (2.0 - wide * near)
-}
-
 /// Sums the pixels of labelled runs.
 #[inline(always)]
 pub(super) fn sum<T: Pixel>(
