@@ -98,6 +98,33 @@ impl<T: Send> Rows for Numbered<'_, T> {
     }
 }
 
+/// Rows of things, and the number of the first row.
+pub(crate) struct NumberedRows<'a, T> {
+    pub(crate) first: usize,
+    /// Things of a row.
+    pub(crate) per_row: usize,
+    pub(crate) all: &'a mut [T],
+}
+
+impl<'a, T> NumberedRows<'a, T> {
+    /// The rows with their numbers.
+    pub(crate) fn each(self) -> impl Iterator<Item = (usize, &'a mut [T])> {
+        (self.first..).zip(self.all.chunks_exact_mut(self.per_row))
+    }
+}
+
+impl<T: Send> Rows for NumberedRows<'_, T> {
+    fn rows(&self) -> usize {
+        self.all.len() / self.per_row
+    }
+
+    fn cut(self, rows: usize) -> (Self, Self) {
+        let NumberedRows { first, per_row, all } = self;
+        let (above, below) = all.split_at_mut(rows * per_row);
+        (NumberedRows { first, per_row, all: above }, NumberedRows { first: first + rows, per_row, all: below })
+    }
+}
+
 /// Does the work on `per_part` rows at a time, on as many threads; each of these parts has memory of its own.
 pub(crate) fn in_rows<P: Default + Send>(
     threads: usize,

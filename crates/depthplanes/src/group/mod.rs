@@ -296,7 +296,7 @@ impl Groups {
     #[inline(always)]
     pub(crate) fn at(&self, [u, v]: [usize; 2]) -> u32 {
         let strip = match &self.strips[..] {
-            [only] => only,
+            [only] => only, // without a division
             strips => &strips[v / strips[0].rows.len()],
         };
         let word = strip.words_of(v - strip.rows.start).start + u / 64;

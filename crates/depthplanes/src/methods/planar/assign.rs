@@ -12,7 +12,7 @@ use super::planes::Planes;
 use super::rule::{Rule, is_near_both};
 use super::tiles::SIDE;
 use crate::group::vectorised;
-use crate::parallel::{Rows, in_parts};
+use crate::parallel::{NumberedRows, in_parts};
 use std::ops::Range;
 
 /// How much further from its plane a pixel may lie where no other plane is near, as a factor.
@@ -27,9 +27,9 @@ pub(super) type Pixels<T> = [T; PIXELS];
 /// Labels every pixel, on as many threads. `grids`: the tiles, and the blocks with the region that their tiles agree on.
 pub(super) fn assign(field: &Field, grids: [&Grid; 2], planes: &Planes<'_>, threads: usize, image: &mut [u16]) {
     let per_row = BLOCK * field.stride;
-    let assign = |part: BlockRows<'_>| {
+    let assign = |blocks: NumberedRows<'_, u16>| {
         let mut scratch = Scratch::default();
-        for (row, image) in (part.first..).zip(part.image.chunks_exact_mut(per_row)) {
+        for (row, image) in blocks.each() {
             let q = &field.q[row * per_row..][..per_row];
             vectorised(
                 #[inline(always)]
@@ -37,27 +37,7 @@ pub(super) fn assign(field: &Field, grids: [&Grid; 2], planes: &Planes<'_>, thre
             );
         }
     };
-    in_parts(threads, BlockRows { first: 0, per_row, image }, assign, |(), ()| ());
-}
-
-/// The image's pixels in some rows of blocks.
-struct BlockRows<'a> {
-    first: usize,
-    /// Pixels of a row of blocks.
-    per_row: usize,
-    image: &'a mut [u16],
-}
-
-impl Rows for BlockRows<'_> {
-    fn rows(&self) -> usize {
-        self.image.len() / self.per_row
-    }
-
-    fn cut(self, rows: usize) -> (Self, Self) {
-        let BlockRows { first, per_row, image } = self;
-        let (above, below) = image.split_at_mut(rows * per_row);
-        (BlockRows { first, per_row, image: above }, BlockRows { first: first + rows, per_row, image: below })
-    }
+    in_parts(threads, NumberedRows { first: 0, per_row, all: image }, assign, |(), ()| ());
 }
 
 #[inline(always)]

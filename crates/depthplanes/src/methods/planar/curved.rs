@@ -79,7 +79,7 @@ pub(super) struct Facets {
     pub(super) boxes: Vec<CellBox>,
     /// For each region what shows that it is a facet of a curved surface, if anything.
     pub(super) signs: Vec<Option<Sign>>,
-    /// For each pair.
+    /// For each pair of regions what is known of its joint.
     joints: Vec<Option<SmoothJoint>>,
 }
 
@@ -169,7 +169,7 @@ pub(super) fn are_apart(all: &[Region], noise: &NoiseModel, pair: &Pair) -> bool
 }
 
 impl Scene<'_> {
-    /// Marks the regions through which and a neighbour one quadratic runs. On as many threads.
+    /// Marks the regions that one quadratic joins to a neighbour. On as many threads.
     fn find_joints(
         &self,
         pairs: &[Pair],

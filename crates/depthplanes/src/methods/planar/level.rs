@@ -11,52 +11,36 @@ use crate::noise::{Blocks, NoiseModel, SensorNoise, Slants, Space, Tiled, VALID}
 /// Memory of this stage.
 #[derive(Debug, Default)]
 pub(super) struct Level {
-    pub(super) scatter: Scatter,
-    pub(super) rays: Rays,
+    pub(super) blocks: Blocks,
+    pub(super) slants: Slants,
 }
 
-/// Memory for the noise.
-#[derive(Debug, Default)]
-pub(super) struct Scatter {
-    blocks: Blocks,
-}
-
-impl Scatter {
-    /// The noise that explains the scatter of a map, rounding included.
-    pub(super) fn estimate(&mut self, grid: &Grid, space: Space) -> SensorNoise {
-        self.blocks.prepare(grid.len().div_ceil(Slants::stride(grid.len())));
-        let full = (grid.side * grid.side) as f64;
-        // As many as the ray is estimated from tell the noise as well.
-        for at in (0..grid.len()).step_by(Slants::stride(grid.len())) {
-            let n = f64::from(grid.pixels(at));
-            if n >= VALID * full {
-                self.blocks.push(grid.q(at), f64::from(grid.squares(at)) / (n - 3.0), 0.0);
-            }
+/// The noise that explains the scatter of a map, rounding included.
+pub(super) fn noise(blocks: &mut Blocks, grid: &Grid, space: Space) -> SensorNoise {
+    blocks.prepare(grid.len().div_ceil(Slants::stride(grid.len())));
+    let full = (grid.side * grid.side) as f64;
+    // As many as the ray is estimated from tell the noise as well.
+    for at in (0..grid.len()).step_by(Slants::stride(grid.len())) {
+        let n = f64::from(grid.pixels(at));
+        if n >= VALID * full {
+            blocks.push(grid.q(at), f64::from(grid.squares(at)) / (n - 3.0), 0.0);
         }
-        self.blocks.noise(space).0
     }
+    blocks.noise(space).0
 }
 
-/// Memory for the ray.
-#[derive(Debug, Default)]
-pub(super) struct Rays {
-    slants: Slants,
-}
-
-impl Rays {
-    /// How well rays are known, pixels, the noise being the stated one if there is one; `step` is that of the values, map
-    /// units.
-    pub(super) fn estimate(&mut self, pyramid: &Pyramid, stated: Option<&NoiseModel>, space: Space, step: f64) -> f64 {
-        let [tiles, .., cells] = &pyramid.grids;
-        let stride = Slants::stride(cells.len());
-        self.slants.prepare(cells.len().div_ceil(stride));
-        for at in (0..cells.len()).step_by(stride) {
-            if f64::from(cells.pixels(at)) >= VALID * (cells.side * cells.side) as f64 {
-                self.slants.add(&tiled(tiles, cells, at), stated, space, step);
-            }
+/// How well rays are known, pixels, the noise being the stated one if there is one; `step` is that of the values, map
+/// units.
+pub(super) fn ray(slants: &mut Slants, pyramid: &Pyramid, stated: Option<&NoiseModel>, space: Space, step: f64) -> f64 {
+    let [tiles, .., cells] = &pyramid.grids;
+    let stride = Slants::stride(cells.len());
+    slants.prepare(cells.len().div_ceil(stride));
+    for at in (0..cells.len()).step_by(stride) {
+        if f64::from(cells.pixels(at)) >= VALID * (cells.side * cells.side) as f64 {
+            slants.add(&tiled(tiles, cells, at), stated, space, step);
         }
-        self.slants.ray().unwrap_or(Slants::LEAST)
     }
+    slants.ray().unwrap_or(Slants::LEAST)
 }
 
 /// A cell of the coarsest and its tiles.

@@ -279,12 +279,15 @@ impl Runner {
         pyramid.sum(map, space, job.threads, field);
         let model = |noise| NoiseModel::new(sensor.measure, noise, field.step);
         let stated = stated(space, params.noise, params.noise_growth).or(sensor.noise).and_then(model);
-        let Level { scatter, rays } = level;
-        let estimated = || Some(model(scatter.estimate(&pyramid.grids[LEVELS - 1], space))?.of_scatter());
+        let Level { blocks, slants } = level;
+        let estimated = || Some(model(level::noise(blocks, &pyramid.grids[LEVELS - 1], space))?.of_scatter());
         let (noise, ray) = side_by_side(
             job.threads,
             || stated.or_else(estimated).expect("an estimate is of the map's own kind"),
-            || if params.ray > 0.0 { params.ray } else { rays.estimate(pyramid, stated.as_ref(), space, field.step) },
+            || match params.ray {
+                0.0 => level::ray(slants, pyramid, stated.as_ref(), space, field.step),
+                ray => ray,
+            },
         );
         noise.with_ray(ray)
     }

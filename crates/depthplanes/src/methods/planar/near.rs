@@ -90,7 +90,7 @@ pub(super) struct Held {
     pub(super) factor: f64,
 }
 
-/// Which planes [`assign`] holds the pixel in column `u`, row `v` against.
+/// Which planes stage "assign" holds the pixel in column `u`, row `v` against.
 pub(super) fn held_against(grids: [&Grid; 2], [u, v]: [usize; 2]) -> Held {
     let [column, row] = [u / BLOCK, v / BLOCK];
     let near = Near::new(grids[0], column, row);

@@ -11,7 +11,7 @@ use super::tiles::{HALVES, Pixels, SIDE, sum_cells, sum_tiles};
 use crate::group::vectorised;
 use crate::map::{DepthView, Pixel};
 use crate::noise::{NoiseModel, Space};
-use crate::parallel::{Rows, in_parts};
+use crate::parallel::{NumberedRows, Rows, in_parts};
 use std::array::from_fn;
 use std::ops::Range;
 
@@ -79,40 +79,21 @@ impl Pyramid {
         for level in 1..LEVELS {
             let (finer, coarser) = self.grids.split_at_mut(level);
             let (parts, grid) = (&finer[level - 1], &mut coarser[0]);
-            let rows = CellRows { first: 0, columns: grid.columns, region: &mut grid.region };
-            in_parts(threads, rows, |rows| rows.hand_up(parts), |(), ()| ());
+            let hand_up = |cells: NumberedRows<'_, u32>| cells.each().for_each(|(row, to)| parts.agreed(row, to));
+            let cells = NumberedRows { first: 0, per_row: grid.columns, all: &mut grid.region[..] };
+            in_parts(threads, cells, hand_up, |(), ()| ());
         }
     }
 }
 
-/// The regions of some rows of cells.
-struct CellRows<'a> {
-    first: usize,
-    columns: usize,
-    region: &'a mut [u32],
-}
-
-impl Rows for CellRows<'_> {
-    fn rows(&self) -> usize {
-        self.region.len() / self.columns
-    }
-
-    fn cut(self, rows: usize) -> (Self, Self) {
-        let CellRows { first, columns, region } = self;
-        let (above, below) = region.split_at_mut(rows * columns);
-        (CellRows { first, columns, region: above }, CellRows { first: first + rows, columns, region: below })
-    }
-}
-
-impl CellRows<'_> {
-    fn hand_up(self, parts: &Grid) {
-        for (row, cells) in (self.first..).zip(self.region.chunks_exact_mut(self.columns)) {
-            let above = parts.region[2 * row * parts.columns..].as_chunks::<2>().0;
-            let below = parts.region[(2 * row + 1) * parts.columns..].as_chunks::<2>().0;
-            for (cell, (above, below)) in cells.iter_mut().zip(above.iter().zip(below)) {
-                let id = above[0];
-                *cell = if [above[1], below[0], below[1]] == [id; 3] { id } else { NONE };
-            }
+impl Grid {
+    /// For each cell of a row, one of 2 x 2 of these, the region that its parts agree on.
+    fn agreed(&self, row: usize, to: &mut [u32]) {
+        let above = self.region[2 * row * self.columns..].as_chunks::<2>().0;
+        let below = self.region[(2 * row + 1) * self.columns..].as_chunks::<2>().0;
+        for (to, (above, below)) in to.iter_mut().zip(above.iter().zip(below)) {
+            let id = above[0];
+            *to = if [above[1], below[0], below[1]] == [id; 3] { id } else { NONE };
         }
     }
 }

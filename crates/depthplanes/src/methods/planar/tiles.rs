@@ -54,7 +54,8 @@ pub(super) fn sum_tiles(q: &[f32], row: usize, pixels: &mut Pixels, halves: &mut
     }
 }
 
-/// Memory for the pixels of a row in even columns, and for those in odd ones.
+/// Memory for the pixels of a row in even columns, and for those in odd ones; by itself, or else the compiler does not see
+/// that [`part`] reads and writes different places.
 type Halves = [[f32; 2 * PIECE]; 2];
 pub(super) const HALVES: Halves = [[0.0; 2 * PIECE]; 2];
 
@@ -168,7 +169,7 @@ fn total([a, b, c, d]: &[f32; SIDE]) -> f32 {
     (a + b) + (c + d)
 }
 
-/// Sum of four numbers times their places.
+/// Sum of four numbers times their places ([`OFF`]).
 #[inline(always)]
 fn along([a, b, c, d]: &[f32; SIDE]) -> f32 {
     1.5 * (d - a) + 0.5 * (c - b)
