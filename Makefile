@@ -16,7 +16,7 @@ DATA ?= ../shared/data
 set = $(if $(wildcard $(DATA)/$(2)),$(1))
 SETS ?= $(call set,segcomp-abw,gt_segcomp_abw) $(call set,middlebury,middlebury) $(call set,synpeb,gt_synpeb) \
 	$(call set,evops,gt_evops) $(call set,nyu-dpd,gt_nyu_dpd) $(call set,sr4000,gt_sr4000_dpd) \
-	scene:random:seed=201-206,sensor=kinect scene:random:seed=201-206,sensor=tof
+	scene:random:seed=201-206,sensor=kinect_white scene:random:seed=201-206,sensor=tof_white
 REPEAT ?= 3
 # Name of this machine's folder of benchmark records.
 MACHINE ?= $(shell scripts/machine)

@@ -49,12 +49,12 @@ def frames(data):
     """(name, map, theta, min): quantised and raw noisy ones, small and large."""
     large = "size=4096x3000"
     yield "made-up room, disparity 8 bit", made_up("room:sensor=disparity", np.uint8), 1, 64
-    room = made_up("room:sensor=kinect", np.uint16)
+    room = made_up("room:sensor=kinect_white", np.uint16)
     yield "made-up room, Kinect >> 5", (room >> 5).astype(np.uint8), 1, 64
     yield "made-up room, Kinect mm", room, 2, 64
-    yield "made-up room, ToF mm", made_up("room:sensor=tof", np.uint16), 2, 64
+    yield "made-up room, ToF mm", made_up("room:sensor=tof_white", np.uint16), 2, 64
     yield "made-up room, disparity 8 bit, large", made_up(f"room:sensor=disparity,{large}", np.uint8), 1, 64
-    room = made_up(f"room:sensor=kinect,{large}", np.uint16)
+    room = made_up(f"room:sensor=kinect_white,{large}", np.uint16)
     yield "made-up room, Kinect >> 5, large", (room >> 5).astype(np.uint8), 1, 64
     yield "made-up room, Kinect mm, large", room, 2, 64
     kinect = real(data, "kinect_v1/cape_depth_0.png")

@@ -117,7 +117,7 @@ def test_outer_contours_are_those_of_opencv(program, tmp_path):
 
 
 def test_the_mesh_of_a_room_has_the_planes_areas(program, tmp_path, tell):
-    mesh, room = tmp_path / "room.ply", "scene:room:seed=2,sensor=tof"
+    mesh, room = tmp_path / "room.ply", "scene:room:seed=2,sensor=tof_white"
     command = [program, "detect", room, "--json", "--outlines=0", "--mesh", mesh]
     planes = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["planes"]
     ply = PlyData.read(mesh)

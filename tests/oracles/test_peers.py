@@ -24,7 +24,7 @@ def evaluated(program, folder, words):
 
 
 def test_cc3d_finds_what_ngaf_finds(program, tmp_path):
-    words = ["scene:room:seed=1-3,size=320x240,sensor=disparity", "scene:room:seed=1-2,size=200x150,sensor=kinect"]
+    words = ["scene:room:seed=1-3,size=320x240,sensor=disparity", "scene:room:seed=1-2,size=200x150,sensor=kinect_white"]
     rows = evaluated(program, tmp_path / "report", [*words, "--methods", "ngaf"])
     maps = {name for name, _ in rows}
     assert len(maps) == 5

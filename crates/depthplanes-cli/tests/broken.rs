@@ -68,7 +68,7 @@ const WRONG: &[(&[&str], &str)] = &[
     (&["detect", "-", "-"], "only once"),
     (&["detect", "-"], "-: "),
     (&["detect", "scene:atlantis"], "room"),
-    (&["detect", "scene:room:sensor=sonar"], "kinect"),
+    (&["detect", "scene:room:sensor=sonar"], "kinect_white"),
     (&["inspect", "notes.txt"], "accepted: PNG"),
     (&["inspect", "gone.pgm"], "gone.pgm"),
     (&["score", "map.pgm"], "<PRED>"),

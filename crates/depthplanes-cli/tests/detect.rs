@@ -335,7 +335,7 @@ fn coplanar_pieces_are_joined_and_their_records_kept() {
     assert_eq!(planes[0]["parts"], serde_json::json!([plain["planes"][0], plain["planes"][1]]));
     assert!(planes[1].get("parts").is_none());
     assert!(run(&["--merge-coplanar=2,0.01"]).ok().contains("2 planes (1 joined of 2 parts) on 100.0 %"));
-    let room = ["detect", "scene:room:seed=2,sensor=tof,size=320x240", "--merge-coplanar", "--json"];
+    let room = ["detect", "scene:room:seed=2,sensor=tof_white,size=320x240", "--merge-coplanar", "--json"];
     let large = json(&bench.run(&[&room[..], &["--min-area", "0.5"]].concat()).ok());
     assert_eq!(large["parameters"]["min-area"], 0.5);
     let areas: Vec<f64> =

@@ -33,7 +33,7 @@ fn wrong_pixels_and_several_maps_are_refused() {
 #[test]
 fn curved_surfaces_are_counted_recorded_and_written() {
     let bench = Bench::new("curved");
-    let scene = "scene:curved:sensor=tof,size=160x120";
+    let scene = "scene:curved:sensor=tof_white,size=160x120";
     let out = bench.run(&["detect", scene, "--curved", "--out-dir", "d"]).ok();
     assert!(out.contains("surfaces that bend on"), "{out}");
     let of_scene = |end: &str| format!("d/scene_curved_sensor_tof_size_160x120.{end}");

@@ -12,12 +12,12 @@ fn json(text: &str) -> Value {
 #[test]
 fn the_flags_it_prints_are_the_estimate_and_detect_takes_them() {
     let bench = Bench::new("noise_flags");
-    let out = bench.run(&["noise", "scene:room:sensor=tof"]).ok();
+    let out = bench.run(&["noise", "scene:room:sensor=tof_white"]).ok();
     let words: Vec<&str> =
         out.lines().last().unwrap().split_whitespace().skip_while(|word| *word != "detect").collect();
     let given: Vec<f64> = words.iter().filter_map(|word| word.parse().ok()).collect();
     assert!((given[0] - 0.001).abs() < 0.0004 && (given[1] - 0.0013).abs() < 0.0002, "{out}");
-    let found = bench.run(&[&words[..], &["scene:room:sensor=tof", "--json"]].concat()).ok();
+    let found = bench.run(&[&words[..], &["scene:room:sensor=tof_white", "--json"]].concat()).ok();
     let record = json(&found);
     assert_eq!(record["parameters"]["noise"], given[0]);
     assert_eq!(record["planes"][0]["metric"]["covariance_from"], "noise");
@@ -26,7 +26,7 @@ fn the_flags_it_prints_are_the_estimate_and_detect_takes_them() {
 #[test]
 fn several_maps_give_one_estimate_more() {
     let bench = Bench::new("noise_several");
-    let words = ["noise", "scene:room:sensor=tof", "scene:stairs:sensor=tof"];
+    let words = ["noise", "scene:room:sensor=tof_white", "scene:stairs:sensor=tof_white"];
     let out = bench.run(&words).ok();
     assert_eq!(out.lines().filter(|line| line.starts_with("scene:")).count(), 2, "{out}");
     assert!(out.contains("all together"), "{out}");
@@ -86,7 +86,7 @@ fn a_map_without_noise_has_nothing_to_tell() {
 fn detect_takes_the_noise_as_a_table() {
     let bench = Bench::new("noise_table");
     bench.write("tof.csv", b"range_m,sigma_m\n1,0.0023\n2,0.0062\n3,0.0127\n4,0.0218\n5,0.0335\n");
-    let scene = "scene:room:sensor=tof";
+    let scene = "scene:room:sensor=tof_white";
     let detect = ["detect", scene, "--json"];
     let with = |words: &[&str]| json(&bench.run(&[&detect[..], words].concat()).ok())["planes"].clone();
     let (by_table, by_flags) =

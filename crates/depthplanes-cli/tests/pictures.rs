@@ -33,7 +33,7 @@ fn the_room_of_the_readme_is_the_demos() {
 }
 
 /// The scene of docs/ngaf.md and the parameters used there.
-const SCENE: &str = "boxes:seed=3,sensor=kinect,size=320x240";
+const SCENE: &str = "boxes:seed=3,sensor=kinect_white,size=320x240";
 const WINDOW: u32 = 5;
 const PARAMETERS: [(&str, f64); 3] = [("theta", 20.0), ("min", 64.0), ("window", WINDOW as f64)];
 
@@ -71,7 +71,7 @@ fn the_room_of_the_page_on_planar_is_what_the_methods_find() {
     let planar: &[&str] = &[];
     let ngaf: &[&str] = &["--method", "ngaf", "--theta", "20", "--min", "100"];
     for (method, picture) in [(planar, "planar-room.png"), (ngaf, "planar-room-ngaf.png")] {
-        let given = ["detect", "scene:room:seed=2,sensor=tof,size=480x360", "--overlay", picture];
+        let given = ["detect", "scene:room:seed=2,sensor=tof_white,size=480x360", "--overlay", picture];
         bench.run(&[&given, method].concat()).ok();
         check(picture, &bench.read(picture));
     }
@@ -80,7 +80,7 @@ fn the_room_of_the_page_on_planar_is_what_the_methods_find() {
 #[test]
 fn the_scene_of_the_page_on_curved_surfaces_is_what_is_reported() {
     let bench = Bench::new("picture_of_curved");
-    let scene = "scene:curved:sensor=kinect,size=400x300";
+    let scene = "scene:curved:sensor=kinect_white,size=400x300";
     bench.run(&["detect", scene, "--curved", "--overlay", "curved.png"]).ok();
     check("planar-curved.png", &bench.read("curved.png"));
 }
@@ -88,7 +88,7 @@ fn the_scene_of_the_page_on_curved_surfaces_is_what_is_reported() {
 #[test]
 fn the_room_of_the_page_on_outlines_is_what_is_outlined() {
     let bench = Bench::new("picture_of_outlines");
-    let scene = "scene:room:seed=2,sensor=tof,size=480x360";
+    let scene = "scene:room:seed=2,sensor=tof_white,size=480x360";
     bench.run(&["detect", scene, "--outlines", "--overlay", "outlines.png"]).ok();
     check("outlines.png", &bench.read("outlines.png"));
 }
@@ -96,7 +96,7 @@ fn the_room_of_the_page_on_outlines_is_what_is_outlined() {
 #[test]
 fn the_room_of_the_page_on_comparators_is_what_each_finds() {
     let bench = Bench::new("picture_of_comparators");
-    let scene = "scene:random:sensor=kinect,size=160x120";
+    let scene = "scene:random:sensor=kinect_white,size=160x120";
     bench.run(&["compare", scene, "--repeat", "1", "--picture", "compare.png"]).ok();
     check("compare.png", &bench.read("compare.png"));
 }

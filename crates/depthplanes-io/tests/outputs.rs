@@ -173,7 +173,8 @@ fn cloud_holds_every_valid_pixel_in_metres() {
 
 /// A made-up room and its planes, many of them with holes.
 fn room() -> (Frame, Detection) {
-    let scene = "room:seed=2,sensor=tof,size=160x120".parse::<depthplanes::scene::Spec>().unwrap().frame().unwrap();
+    let scene =
+        "room:seed=2,sensor=tof_white,size=160x120".parse::<depthplanes::scene::Spec>().unwrap().frame().unwrap();
     let depthplanes::scene::ScenePixels::U16(pixels) = &scene.pixels else { panic!("millimetres") };
     let mut detector = Detector::new(Ngaf { theta: 40.0, min: 8, ..Ngaf::default() }).unwrap().sensor(scene.sensor);
     let found = detector.detect(scene.view()).unwrap().clone();

@@ -29,7 +29,7 @@ fn main() -> Outcome<()> {
         stages.iter().map(|stage| format!("{stage}_us")).collect::<Vec<_>>().join(",")
     );
     for [width, height] in SIZES {
-        let spec = format!("random:sensor=kinect,size={width}x{height}");
+        let spec = format!("random:sensor=kinect_white,size={width}x{height}");
         let frame = spec.parse::<Spec>()?.frame()?;
         // Large frames take long, and their times vary less.
         let rounds = if width * height > 2_000_000 { rounds.div_ceil(4) } else { rounds };

@@ -50,7 +50,7 @@ fn overlaps(frame: &SceneFrame, found: &Detection) -> Vec<f64> {
 #[test]
 fn the_three_planes_of_a_corner_are_found_in_depth_and_in_disparity() {
     for method in METHODS {
-        for sensor in ["clean", "clean_mm", "kinect", "disparity"] {
+        for sensor in ["clean", "clean_mm", "kinect_white", "disparity"] {
             let frame = scene(&format!("planes3:sensor={sensor}"));
             let found = run(method, &[], frame.sensor, frame.view());
             let overlaps = overlaps(&frame, &found);
@@ -66,7 +66,7 @@ fn the_three_planes_of_a_corner_are_found_in_depth_and_in_disparity() {
 
 #[test]
 fn the_same_seed_gives_the_same_labels_on_any_number_of_threads() {
-    let frame = scene("boxes:sensor=kinect,size=320x240");
+    let frame = scene("boxes:sensor=kinect_white,size=320x240");
     for method in METHODS {
         let one = run(method, &[], frame.sensor, frame.view());
         let again = find(method).unwrap().with(&[]).unwrap();

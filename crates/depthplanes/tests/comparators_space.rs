@@ -100,7 +100,7 @@ fn ransac_with_a_coarse_epsilon_joins_low_steps() {
 
 #[test]
 fn ransac_with_one_epsilon_for_all_ranges_breaks_what_is_far() {
-    let frame = scene("random:seed=1,sensor=kinect");
+    let frame = scene("random:seed=1,sensor=kinect_white");
     let wall = |name: &str| {
         let found = detect(name, &[], frame.sensor, frame.view());
         let pieces = frame.truth.pieces(1);
@@ -114,7 +114,7 @@ fn ransac_with_one_epsilon_for_all_ranges_breaks_what_is_far() {
 fn ransac_leaves_planes_that_meet_their_points_near_edges() {
     let mut count = [0, 0];
     for seed in 1..=3 {
-        let frame = scene(&format!("room:seed={seed},sensor=kinect"));
+        let frame = scene(&format!("room:seed={seed},sensor=kinect_white"));
         let found = detect("ransac", &[], frame.sensor, frame.view());
         let matched = best(&frame.truth.pieces(500).labels, &found.labels);
         count[0] += matched.iter().filter(|(_, iou)| *iou >= 0.75).count();

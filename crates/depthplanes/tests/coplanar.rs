@@ -81,7 +81,7 @@ fn check(before: &Detection, after: &Detection, within: Coplanar) {
 fn a_wall_behind_a_column_and_two_table_tops_become_one_plane_each() {
     let noise = SensorNoise::Depth { base: 0.0, growth: 1.425e-3 };
     for (sensor, noise) in
-        [(SensorModel::CleanMm, None), (SensorModel::KinectV1, Some(noise)), (SensorModel::Tof, None)]
+        [(SensorModel::CleanMm, None), (SensorModel::KinectV1White, Some(noise)), (SensorModel::TofWhite, None)]
     {
         let mut frame = made(&hall(), sensor);
         frame.sensor.noise = noise;
@@ -120,7 +120,7 @@ fn a_wall_behind_a_column_and_two_table_tops_become_one_plane_each() {
 
 #[test]
 fn parallel_walls_ten_centimetres_apart_stay_two() {
-    for sensor in [SensorModel::CleanMm, SensorModel::Tof] {
+    for sensor in [SensorModel::CleanMm, SensorModel::TofWhite] {
         let mut scene = Scene::default();
         wall(&mut scene, [-3.0, -0.2], 3.0);
         wall(&mut scene, [0.2, 3.0], 3.1);
@@ -150,7 +150,7 @@ fn planes_that_turn_slowly_do_not_join_hand_in_hand() {
 #[test]
 fn joining_coarsens_the_labels_and_nothing_is_joined_within_nothing() {
     for seed in 0..12 {
-        let sensor = ["kinect", "tof", "clean_mm"][seed % 3];
+        let sensor = ["kinect_white", "tof_white", "clean_mm"][seed % 3];
         let frame =
             format!("random:seed={seed},sensor={sensor},size=320x240").parse::<Spec>().unwrap().frame().unwrap();
         let before = detector(&frame).detect(frame.view()).unwrap().clone();
@@ -165,7 +165,7 @@ fn joining_coarsens_the_labels_and_nothing_is_joined_within_nothing() {
 
 #[test]
 fn every_method_joins_and_threads_and_repetition_change_no_byte() {
-    let frame = "room:seed=2,sensor=tof".parse::<Spec>().unwrap().frame().unwrap();
+    let frame = "room:seed=2,sensor=tof_white".parse::<Spec>().unwrap().frame().unwrap();
     let ngaf = || Ngaf { theta: 30.0, min: 200, window: 3, min_fill: 0.1, ..Ngaf::default() };
     let detectors: [&dyn Fn() -> Detector; 2] =
         [&|| Detector::new(Planar::default()).unwrap(), &|| Detector::new(ngaf()).unwrap()];
@@ -182,7 +182,7 @@ fn every_method_joins_and_threads_and_repetition_change_no_byte() {
 
 #[test]
 fn planes_smaller_than_an_area_leave_no_label() {
-    let frame = "room:seed=2,sensor=tof,size=320x240".parse::<Spec>().unwrap().frame().unwrap();
+    let frame = "room:seed=2,sensor=tof_white,size=320x240".parse::<Spec>().unwrap().frame().unwrap();
     let find = |min_area: f64, within: Option<Coplanar>| {
         let detector = Detector::new(Planar { min_area, ..Planar::default() }).unwrap().sensor(frame.sensor);
         let mut detector =
@@ -245,7 +245,7 @@ fn truths(frame: &SceneFrame, found: &Detection) -> Vec<Option<u16>> {
 fn pieces_of_one_plane_of_a_room_are_joined_and_others_are_nearly_coplanar() {
     let (mut together, mut same, mut apart, mut wrong) = (0, 0, 0, 0);
     for seed in 101..=110 {
-        let frame = format!("room:seed={seed},sensor=tof").parse::<Spec>().unwrap().frame().unwrap();
+        let frame = format!("room:seed={seed},sensor=tof_white").parse::<Spec>().unwrap().frame().unwrap();
         let detector = || Detector::new(Planar { min: 300, ..Planar::default() }).unwrap().sensor(frame.sensor);
         let before = detector().detect(frame.view()).unwrap().clone();
         let mut joining = detector().merge_coplanar(Coplanar::default()).unwrap();

@@ -167,7 +167,9 @@ fn errors_of_planes_found_in_rooms_are_what_the_noise_says() {
 fn errors_of_a_corner_under_a_sensor_with_flying_pixels_and_ragged_edges_are_what_the_noise_says() {
     let kinect = SensorNoise::Depth { base: 0.0, growth: 0.0722 / (580.0 * 0.075) };
     let tof = SensorNoise::Depth { base: 0.001, growth: 0.0013 };
-    for (sensor, noise) in [("tof", Some(tof)), ("tof", None), ("kinect", Some(kinect)), ("clean_mm", None)] {
+    for (sensor, noise) in
+        [("tof_white", Some(tof)), ("tof_white", None), ("kinect_white", Some(kinect)), ("clean_mm", None)]
+    {
         let mut errors = Vec::new();
         for seed in 1..=200 {
             let spec = format!("planes3:size=160x120,sensor={sensor},seed={seed}");

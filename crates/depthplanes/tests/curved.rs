@@ -135,7 +135,7 @@ fn flat_regions_are_rarely_called_curved() {
 #[test]
 fn most_of_balls_and_columns_is_reported() {
     let kinect = Some(SensorNoise::Depth { base: 0.0, growth: 1.425e-3 });
-    for (sensor, noise) in [("kinect", kinect), ("tof", None), ("clean_mm", None)] {
+    for (sensor, noise) in [("kinect_white", kinect), ("tof_white", None), ("clean_mm", None)] {
         let (mut curved, mut told, mut flat, mut false_told, mut as_planes) = (0, 0, 0, 0, 0);
         let specs = (201..=210).map(|seed| format!("random:seed={seed},sensor={sensor}"));
         for spec in specs.chain([1, 2, 3].map(|seed| format!("curved:seed={seed},sensor={sensor}"))) {
@@ -172,7 +172,7 @@ fn most_of_balls_and_columns_is_reported() {
 
 #[test]
 fn curved_regions_are_as_their_labels_say_and_planes_stay_the_same() {
-    let frame = scene("curved:sensor=kinect,size=320x240");
+    let frame = scene("curved:sensor=kinect_white,size=320x240");
     let detect = |curved: bool| {
         let mut detector = Detector::new(Planar::default()).unwrap().sensor(frame.sensor).curved(curved);
         detector.detect(frame.view()).unwrap();

@@ -169,7 +169,7 @@ fn detections_on_random_maps_are_what_they_say() {
 #[test]
 fn detections_on_scenes_are_what_they_say() {
     for scene in SCENES {
-        for sensor in ["clean", "clean_mm", "kinect", "tof", "disparity"] {
+        for sensor in ["clean", "clean_mm", "kinect_white", "tof_white", "disparity"] {
             let name = format!("{}:sensor={sensor},size=160x120", scene.name);
             let frame = name.parse::<Spec>().unwrap().frame().unwrap();
             let metres = if sensor == "clean" { 0.001 } else { 1.0 };

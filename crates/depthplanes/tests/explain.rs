@@ -18,10 +18,10 @@ fn detector_of(name: &str, given: &[(&str, f64)], frame: &SceneFrame) -> Detecto
 }
 
 const SCENES: [&str; 6] = [
-    "room:seed=2,sensor=tof,size=320x240",
-    "random:seed=301,sensor=kinect,size=320x240",
-    "random:seed=302,sensor=tof,size=320x240",
-    "curved:sensor=kinect,size=320x240",
+    "room:seed=2,sensor=tof_white,size=320x240",
+    "random:seed=301,sensor=kinect_white,size=320x240",
+    "random:seed=302,sensor=tof_white,size=320x240",
+    "curved:sensor=kinect_white,size=320x240",
     "boxes:seed=4,sensor=clean_mm,size=320x240",
     "room:seed=7,sensor=disparity,size=320x240",
 ];
@@ -92,7 +92,7 @@ fn every_suggestion_works_and_every_label_is_that_of_the_detection() {
 
 #[test]
 fn explaining_changes_nothing_of_the_next_detection() {
-    let frame = scene("random:seed=301,sensor=kinect,size=320x240");
+    let frame = scene("random:seed=301,sensor=kinect_white,size=320x240");
     for method in METHODS {
         let mut detector = detector(method, &[], &frame);
         let before = detector.detect(frame.view()).unwrap().clone();
@@ -129,7 +129,7 @@ fn each_reason_is_told() {
         ["plane", "small", "not_measured", "off"]
     );
 
-    let frame = scene("boxes:seed=4,sensor=kinect,size=320x240");
+    let frame = scene("boxes:seed=4,sensor=kinect_white,size=320x240");
     let small = detector_of("planar", &[("min-area", 0.1)], &frame).explain(frame.view(), [40, 200]).unwrap();
     let large = detector_of("planar", &[("min-area", 50.0)], &frame).explain(frame.view(), [40, 200]).unwrap();
     assert_eq!((small.verdict.kind(), large.verdict.kind()), ("plane", "dropped"), "{small:?}");
@@ -158,7 +158,7 @@ fn number(why: &Explanation, name: &str) -> f64 {
 
 #[test]
 fn a_piece_that_was_cut_off_is_told_by_the_plane_that_it_went_to() {
-    let frame = scene("room:seed=7,sensor=tof,size=160x120");
+    let frame = scene("room:seed=7,sensor=tof_white,size=160x120");
     let mut detector = detector_of("planar", &[], &frame);
     let planes = detector.detect(frame.view()).unwrap().planes.clone();
     let (mut strays, mut held) = (0, 0);

@@ -18,11 +18,11 @@ fn estimate(spec: &str, seeds: u64) -> Estimate {
 
 #[test]
 fn estimates_are_within_a_fifth_of_the_generators_noise() {
-    // kinect: 0.072 px of disparity, steps included; tof: 1 mm + 1.3 mm (z / 1 m)^2.
+    // kinect_white: 0.072 px of disparity, steps included; tof_white: 1 mm + 1.3 mm (z / 1 m)^2.
     let kinect = |z: f64| 0.0722 / (580.0 * 0.075) * z * z;
     let tof = |z: f64| 0.001 + 0.0013 * z * z;
     for scene in ["room", "random", "boxes", "planes3"] {
-        for (sensor, truth) in [("kinect", &kinect as &dyn Fn(f64) -> f64), ("tof", &tof)] {
+        for (sensor, truth) in [("kinect_white", &kinect as &dyn Fn(f64) -> f64), ("tof_white", &tof)] {
             for seeds in [1, 5] {
                 let model = estimate(&format!("{scene}:sensor={sensor}"), seeds).model();
                 let ratios = [1.0, 2.0, 3.0, 4.0].map(|z| model.depth_sigma_m(z).unwrap() / truth(z));
@@ -82,7 +82,7 @@ fn too_little_to_estimate_from_is_an_error() {
 
 #[test]
 fn frames_in_which_a_third_is_missing_count_less_and_do_not_mislead() {
-    let frame = "room:sensor=tof".parse::<Spec>().unwrap().frame().unwrap();
+    let frame = "room:sensor=tof_white".parse::<Spec>().unwrap().frame().unwrap();
     let mut full = Estimator::default();
     full.add(frame.view(), frame.sensor.measure).unwrap();
     let depthplanes::scene::ScenePixels::U16(mut pixels) = frame.pixels.clone() else { panic!("16 bits") };
@@ -222,7 +222,7 @@ fn noise_that_grows_with_the_range_is_no_ray() {
         }
     }
     for scene in ["room", "random", "stairs"] {
-        for sensor in ["clean", "clean_mm", "kinect", "tof", "disparity"] {
+        for sensor in ["clean", "clean_mm", "kinect_white", "tof_white", "disparity"] {
             assert_eq!(estimate(&format!("{scene}:sensor={sensor}"), 1).ray, None, "{scene} {sensor}");
         }
     }

@@ -51,7 +51,7 @@ fn covered_of_curved(truth: &Truth, found: &Detection) -> usize {
 
 #[test]
 fn the_three_planes_of_a_corner_are_found_with_their_equations() {
-    for (sensor, angle) in [("clean", 0.01), ("clean_mm", 0.01), ("kinect", 0.2), ("tof", 0.2)] {
+    for (sensor, angle) in [("clean", 0.01), ("clean_mm", 0.01), ("kinect_white", 0.2), ("tof_white", 0.2)] {
         let frame = scene(&format!("planes3:sensor={sensor}"));
         let found = detect(Planar::default(), &frame);
         assert_eq!(found.planes.len(), 3, "{sensor}");
@@ -73,8 +73,8 @@ fn rooms_of_boxes_balls_and_columns_are_found_as_they_are() {
     // Seeds that the method was not tuned on.
     for (sensor, noise, least, most_cover) in [
         ("clean_mm", None, 0.97, 0.01),
-        ("kinect", Some(SensorNoise::Depth { base: 0.0, growth: 1.425e-3 }), 0.9, 0.09),
-        ("tof", None, 0.9, 0.045),
+        ("kinect_white", Some(SensorNoise::Depth { base: 0.0, growth: 1.425e-3 }), 0.9, 0.09),
+        ("tof_white", None, 0.9, 0.045),
     ] {
         let (mut f, mut covered, mut curved, seeds) = (0.0, 0, 0, 60);
         let mut off = Vec::new();

@@ -188,7 +188,7 @@ fn bytes(frame: &SceneFrame) -> Vec<u8> {
 #[test]
 fn the_seed_alone_decides_every_byte() {
     for scene in SCENES {
-        let of = |seed: u64| bytes(&frame(&format!("{}:seed={seed},sensor=kinect,size=80x60", scene.name)));
+        let of = |seed: u64| bytes(&frame(&format!("{}:seed={seed},sensor=kinect_white,size=80x60", scene.name)));
         assert_eq!(of(4), of(4), "{}", scene.name);
         assert_ne!(of(4), of(5), "{}", scene.name);
     }
@@ -230,7 +230,7 @@ fn statistics(sensor: &str, error: impl Fn(f64, f64) -> f64) -> [f64; 2] {
 #[test]
 fn kinect_errs_by_a_sixteenth_of_a_pixel_and_rounds_to_an_eighth() {
     let f_b = 580.0 * 0.075;
-    let [mean, sd] = statistics("kinect", |mm, z| f_b / (mm / 1000.0) - f_b / z);
+    let [mean, sd] = statistics("kinect_white", |mm, z| f_b / (mm / 1000.0) - f_b / z);
     // Rounding to steps of 1/8 adds (1/8)^2 / 12 to the variance.
     let expected = (1.0f64 / 256.0 + 1.0 / 768.0).sqrt();
     assert!(mean.abs() < 0.002 && (sd / expected - 1.0).abs() < 0.03, "mean {mean}, sd {sd}, expected {expected}");
@@ -238,7 +238,7 @@ fn kinect_errs_by_a_sixteenth_of_a_pixel_and_rounds_to_an_eighth() {
 
 #[test]
 fn tof_errs_as_its_formula_says() {
-    let [mean, sd] = statistics("tof", |mm, z| (mm / 1000.0 - z) / (0.001 + 0.0013 * z * z));
+    let [mean, sd] = statistics("tof_white", |mm, z| (mm / 1000.0 - z) / (0.001 + 0.0013 * z * z));
     assert!(mean.abs() < 0.01 && (sd - 1.0).abs() < 0.02, "mean {mean}, sd {sd}");
 }
 
@@ -255,7 +255,7 @@ fn box_before_wall(sensor: SensorModel) -> (SceneFrame, Vec<usize>) {
 
 #[test]
 fn shadows_fall_to_the_left_of_near_things() {
-    for (sensor, baseline_m) in [(SensorModel::KinectV1, 0.075), (SensorModel::Disparity8, 0.1)] {
+    for (sensor, baseline_m) in [(SensorModel::KinectV1White, 0.075), (SensorModel::Disparity8, 0.1)] {
         let (frame, columns) = box_before_wall(sensor);
         let (left, right) = (columns[0], columns[columns.len() - 1]);
         let missing = |range: std::ops::Range<usize>| range.filter(|u| frame.value(240 * 640 + u) == 0.0).count();

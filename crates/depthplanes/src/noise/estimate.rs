@@ -173,7 +173,7 @@ impl Estimate {
 /// ```
 /// use depthplanes::noise::{Estimator, SensorNoise};
 /// use depthplanes::scene::Spec;
-/// let frame = "room:sensor=tof".parse::<Spec>()?.frame()?;
+/// let frame = "room:sensor=tof_white".parse::<Spec>()?.frame()?;
 /// let mut estimator = Estimator::default();
 /// estimator.add(frame.view(), frame.sensor.measure)?;
 /// // The generator's noise is 1 mm + 1.3 mm (z / 1 m)^2.

@@ -13,7 +13,7 @@
 //!
 //! ```
 //! use depthplanes::scene::Spec;
-//! let frame = "room:seed=7,sensor=kinect,size=320x240".parse::<Spec>()?.frame()?;
+//! let frame = "room:seed=7,sensor=kinect_white,size=320x240".parse::<Spec>()?.frame()?;
 //! assert_eq!((frame.view().width(), frame.view().height()), (320, 240));
 //! assert!(frame.truth.planes.len() > 10);
 //! // The largest plane, where the camera sees it without noise.

@@ -22,9 +22,9 @@ pub enum SensorModel {
     /// Exact depth rounded to `u16` millimetres.
     CleanMm,
     /// Structured light: a Kinect v1, `u16` millimetres.
-    KinectV1,
+    KinectV1White,
     /// Time of flight, `u16` millimetres.
-    Tof,
+    TofWhite,
     /// The true disparity of a rectified pair in `u8` steps of a quarter of a pixel.
     Disparity8,
 }
@@ -45,14 +45,14 @@ pub const SENSORS: &[SensorInfo] = &[
     SensorInfo { name: "clean", about: "exact depth, f32 metres", model: SensorModel::Clean },
     SensorInfo { name: "clean_mm", about: "exact depth in whole millimetres, u16", model: SensorModel::CleanMm },
     SensorInfo {
-        name: "kinect",
+        name: "kinect_white",
         about: "structured light (Kinect v1), u16 millimetres: disparity noise and steps, shadows, ragged edges, 0.5 to 8 m",
-        model: SensorModel::KinectV1,
+        model: SensorModel::KinectV1White,
     },
     SensorInfo {
-        name: "tof",
+        name: "tof_white",
         about: "time of flight, u16 millimetres: noise that grows with range, flying pixels at edges, 0.5 to 5.46 m",
-        model: SensorModel::Tof,
+        model: SensorModel::TofWhite,
     },
     SensorInfo {
         name: "disparity",
@@ -89,7 +89,9 @@ impl SensorModel {
     pub fn measure(self, camera: &Camera) -> Measure {
         match self {
             SensorModel::Clean => Measure::Depth { metres: 1.0 },
-            SensorModel::CleanMm | SensorModel::KinectV1 | SensorModel::Tof => Measure::Depth { metres: 0.001 },
+            SensorModel::CleanMm | SensorModel::KinectV1White | SensorModel::TofWhite => {
+                Measure::Depth { metres: 0.001 }
+            }
             SensorModel::Disparity8 => {
                 let units_m = UNITS_PER_PIXEL * camera.intrinsics.fx.abs() * STEREO_BASELINE_M;
                 Measure::InverseDepth { slope: 1.0 / units_m, offset: 0.0 }
@@ -104,8 +106,8 @@ impl SensorModel {
         match self {
             SensorModel::Clean => ScenePixels::F32(depth_m.iter().map(|&z| z as f32).collect()),
             SensorModel::CleanMm => ScenePixels::U16(depth_m.iter().map(|&z| millimetres(z)).collect()),
-            SensorModel::KinectV1 => ScenePixels::U16(kinect::millimetres_of(exposure, &mut random)),
-            SensorModel::Tof => ScenePixels::U16(tof::millimetres_of(exposure, &mut random)),
+            SensorModel::KinectV1White => ScenePixels::U16(kinect::millimetres_of(exposure, &mut random)),
+            SensorModel::TofWhite => ScenePixels::U16(tof::millimetres_of(exposure, &mut random)),
             SensorModel::Disparity8 => ScenePixels::U8(disparities(exposure)),
         }
     }

@@ -1,4 +1,4 @@
-//! A frame in one line of text: `room`, `room:seed=7,sensor=tof,size=320x240`.
+//! A frame in one line of text: `room`, `room:seed=7,sensor=tof_white,size=320x240`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -18,15 +18,15 @@ const KEYS: &str = "seed, sensor, size";
 /// Which frame to make: a scene of [`super::SCENES`] and how it is seen.
 ///
 /// As text: the scene's name, then any of `seed=`, `sensor=` (a name of [`super::SENSORS`]) and
-/// `size=WIDTHxHEIGHT` after a colon, separated by commas. Left out they are 1, `kinect` and
+/// `size=WIDTHxHEIGHT` after a colon, separated by commas. Left out they are 1, `kinect_white` and
 /// 640x480. [`fmt::Display`] writes all three, and the text reads back as the same spec.
 ///
 /// ```
 /// use depthplanes::scene::Spec;
-/// let spec: Spec = "stairs:sensor=tof".parse()?;
-/// assert_eq!(spec.to_string(), "stairs:seed=1,sensor=tof,size=640x480");
+/// let spec: Spec = "stairs:sensor=tof_white".parse()?;
+/// assert_eq!(spec.to_string(), "stairs:seed=1,sensor=tof_white,size=640x480");
 /// let error = "stairs:sensor=sonar".parse::<Spec>().unwrap_err();
-/// assert_eq!(error.to_string(), "there is no sensor `sonar`; there are: clean, clean_mm, kinect, tof, disparity");
+/// assert_eq!(error.to_string(), "there is no sensor `sonar`; there are: clean, clean_mm, kinect_white, tof_white, disparity");
 /// # Ok::<(), depthplanes::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
@@ -51,19 +51,19 @@ impl PartialEq for Spec {
 }
 
 impl Spec {
-    /// The scene of that name, seed 1, `kinect`, 640 x 480.
+    /// The scene of that name, seed 1, `kinect_white`, 640 x 480.
     ///
     /// # Errors
     /// [`Error::Unknown`] with the names there are.
     pub fn new(scene: &str) -> Result<Self> {
-        Ok(Spec { scene: find(scene)?, seed: 1, sensor: SensorModel::KinectV1, width: 640, height: 480 })
+        Ok(Spec { scene: find(scene)?, seed: 1, sensor: SensorModel::KinectV1White, width: 640, height: 480 })
     }
 
     /// The frame of a first look: `room`, as a Kinect sees it.
     ///
     /// ```
     /// use depthplanes::scene::Spec;
-    /// assert_eq!(Spec::demo().to_string(), "room:seed=1,sensor=kinect,size=640x480");
+    /// assert_eq!(Spec::demo().to_string(), "room:seed=1,sensor=kinect_white,size=640x480");
     /// ```
     pub fn demo() -> Self {
         Spec::new("room").expect("the room is a row of the table")

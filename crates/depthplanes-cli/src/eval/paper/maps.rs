@@ -39,12 +39,12 @@ const MAPS: [Map; 11] = [
     disparity("Cones", "middlebury/cones/disp2.png", "curved:sensor=disparity,size=450x375"),
     disparity("Teddy", "middlebury/teddy/disp2.png", "random:seed=3,sensor=disparity,size=450x375"),
     disparity("Books", "middlebury/Books/disp1.png", "boxes:sensor=disparity,size=463x370"),
-    depth("CAPE", "kinect_v1/cape_depth_0.png", "kinect1", "corridor:sensor=kinect"),
-    depth("Tutorial 1", "kinect_v1/gx_partIII_data_depth1.png", "kinect1", "room:seed=1,sensor=kinect"),
-    depth("Tutorial 2", "kinect_v1/gx_partIII_data_depth2.png", "kinect1", "room:seed=2,sensor=kinect"),
-    depth("TUM fr3", "tum/deplex_fr3_1341848230.910894.png", "tum-fr3", "boxes:sensor=kinect"),
-    depth("7-Scenes 0", "video_7scenes/frame-000000.depth.png", "7-scenes", "random:seed=1,sensor=kinect"),
-    depth("TSDF 150", "video_tsdf_fusion/frame-000150.depth.png", "kinect1", "random:seed=2,sensor=kinect"),
+    depth("CAPE", "kinect_v1/cape_depth_0.png", "kinect1", "corridor:sensor=kinect_white"),
+    depth("Tutorial 1", "kinect_v1/gx_partIII_data_depth1.png", "kinect1", "room:seed=1,sensor=kinect_white"),
+    depth("Tutorial 2", "kinect_v1/gx_partIII_data_depth2.png", "kinect1", "room:seed=2,sensor=kinect_white"),
+    depth("TUM fr3", "tum/deplex_fr3_1341848230.910894.png", "tum-fr3", "boxes:sensor=kinect_white"),
+    depth("7-Scenes 0", "video_7scenes/frame-000000.depth.png", "7-scenes", "random:seed=1,sensor=kinect_white"),
+    depth("TSDF 150", "video_tsdf_fusion/frame-000150.depth.png", "kinect1", "random:seed=2,sensor=kinect_white"),
 ];
 
 /// Where a map comes from.

@@ -28,7 +28,7 @@ pub(super) fn disparity(sources: &[Source], data: Option<&Path>) -> Outcome<Vec<
 
 /// Made-up maps of a Kinect.
 pub(super) fn depth() -> Outcome<Vec<Item>> {
-    Ok(named(scenes("sensor=kinect")?, DEPTH))
+    Ok(named(scenes("sensor=kinect_white")?, DEPTH))
 }
 
 fn scenes(how: &str) -> Outcome<Vec<Item>> {

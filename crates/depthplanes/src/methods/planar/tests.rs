@@ -10,12 +10,12 @@ use crate::scene::{Random, SceneFrame, Spec};
 
 /// Depth and disparity, of one byte, two and four; one of several parts and strips.
 const SCENES: [&str; 6] = [
-    "room:sensor=kinect,size=320x240",
-    "curved:sensor=tof,size=320x240",
+    "room:sensor=kinect_white,size=320x240",
+    "curved:sensor=tof_white,size=320x240",
     "random:sensor=disparity,size=321x203",
     "random:sensor=clean,size=320x240",
     "stairs:sensor=clean_mm,size=320x240",
-    "random:sensor=kinect,size=1024x768",
+    "random:sensor=kinect_white,size=1024x768",
 ];
 
 fn on(frame: &SceneFrame, threads: usize) -> Detection {
