@@ -1,7 +1,10 @@
 //! The measures of a prediction against the truth: one table, which `score` and `eval` print.
 
-use depthplanes::metrics::{Contingency, Evops, Partition, SegComp, Tolerance, evops, partition, segcomp};
+use depthplanes::metrics::{
+    Contingency, Evops, Partial, Partition, SegComp, SurfaceCounts, Tolerance, evops, partition, segcomp,
+};
 use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
 
 /// What all measures say of a prediction.
 pub(crate) struct Scores {
@@ -112,6 +115,34 @@ pub(crate) const MEASURES: &[Measure] = &[
     measure("on_planes", "variation_of_information", "", "VOI there", Known(|s| Some(s.on_planes?.variation_of_information))),
     measure("on_planes", "segmentation_covering", "", "SC there", Known(|s| Some(s.on_planes?.segmentation_covering))),
 ];
+
+/// The families of counts over labelled surfaces, and the fewest pixels of theirs. What a sensor makes of a surface depends
+/// on its size: below 3,000 pixels it is mostly border, above 10,000 the smooth part of the error shows.
+const SURFACES: [(&str, u64); 3] = [("surfaces", 1), ("surfaces_3000", 3000), ("surfaces_10000", 10_000)];
+
+/// Counts of a family.
+#[rustfmt::skip]
+const COUNTS: [(&str, fn(&SurfaceCounts) -> u64); 8] = [
+    ("all", |counts| counts.surfaces),
+    ("correct", |counts| counts.correct),
+    ("merged", |counts| counts.merged),
+    ("split", |counts| counts.split),
+    ("missed", |counts| counts.missed),
+    ("pieces", |counts| counts.pieces),
+    ("pixels", |counts| counts.pixels),
+    ("correct_pixels", |counts| counts.correct_pixels),
+];
+
+/// The measures of a partial truth, by `family.name`: counts, so that those of several maps can be added up.
+pub(crate) fn of_surfaces(found: &Partial) -> BTreeMap<String, f64> {
+    let of_family = |(family, least): (&str, u64)| {
+        let counts = found.of_at_least(least);
+        COUNTS.map(|(name, count)| (format!("{family}.{name}"), count(&counts) as f64))
+    };
+    let not_planar = [("pixels", found.not_planar), ("covered", found.not_planar_covered)];
+    let not_planar = not_planar.map(|(name, pixels)| (format!("not_planar.{name}"), pixels as f64));
+    SURFACES.into_iter().flat_map(of_family).chain(not_planar).collect()
+}
 
 /// An object for each family, with a field for each of its measures.
 pub(crate) fn families(value: impl Fn(&Measure) -> Value) -> Map<String, Value> {

@@ -60,7 +60,7 @@ fn what_is_wrong_with_a_set_is_said() {
         let err = bench.run(&[&["eval"], words, &["--report", "report"]].concat()).fails(2);
         assert!(err.contains(part), "{words:?}: {err}");
     };
-    says(&["nowhere"], "there are middlebury, kinect, segcomp-abw");
+    says(&["nowhere"], "there are real, real-presets, middlebury, kinect, segcomp-abw");
     says(&["evops"], "Give evops=DIR, or --data DIR with a folder `gt_evops` in it");
     says(&["evops=absent"], "no such folder; it needs NAME.depth.png");
     says(&["evops=empty"], "no map of this set is in it; it needs NAME.depth.png");

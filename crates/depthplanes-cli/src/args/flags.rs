@@ -28,6 +28,20 @@ pub(crate) struct Reading {
 }
 
 impl Reading {
+    /// The flags on reading that these words are.
+    ///
+    /// # Errors
+    /// Says which word is no such flag, or no value of its flag.
+    pub(crate) fn from_words(words: &[String]) -> Result<Self, String> {
+        let flags = clap::Command::new("flags").no_binary_name(true).disable_help_flag(true).args(reading());
+        let matches = flags.try_get_matches_from(words).map_err(|error| {
+            let message = error.to_string();
+            let first = message.lines().next().unwrap_or_default();
+            first.strip_prefix("error: ").unwrap_or(first).to_string()
+        })?;
+        Ok(Self::from_matches(&matches))
+    }
+
     pub(super) fn from_matches(matches: &ArgMatches) -> Self {
         let number = |id| matches.get_one::<f64>(id).copied();
         let text = |id| matches.get_one::<String>(id).cloned();

@@ -6,10 +6,10 @@ use super::machine;
 use super::peers::Peer;
 use super::rows::{Found, Key, Made, Row, Store};
 use crate::failure::{Failure, Outcome};
-use crate::measures::{MEASURES, Scores};
+use crate::measures::{MEASURES, Scores, of_surfaces};
 use crate::run::{Recipe, Runner};
 use depthplanes::Detection;
-use depthplanes::metrics::{Contingency, Tolerance, evops, plane_errors, segcomp};
+use depthplanes::metrics::{Contingency, Tolerance, evops, partial, plane_errors, segcomp};
 use depthplanes_io::Frame;
 use depthplanes_io::outputs::{Spread, grey16_png, write_file};
 use std::collections::BTreeMap;
@@ -120,6 +120,10 @@ fn score(truth: &TruthOf, detection: &Detection, made: &mut Found) -> Outcome {
         )));
     }
     let table = Contingency::new(&truth.labels.labels, &detection.labels)?.truth_from(truth.from);
+    if let Some(coplanar) = &truth.partial {
+        made.scores = of_surfaces(&partial(&table, coplanar));
+        return Ok(());
+    }
     let scores = Scores::of(&table, Tolerance::default());
     let value = |measure: &crate::measures::Measure| {
         Some((format!("{}.{}", measure.family, measure.name), measure.value(&scores)?))

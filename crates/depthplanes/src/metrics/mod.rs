@@ -1,5 +1,5 @@
 //! A label image against the truth: SegComp, EVOPS, and the partition measures of the PlaneNet
-//! family; planes' equations against known ones.
+//! family; against a truth of some surfaces only ([`partial`]); planes' equations against known ones.
 //!
 //! In: two label images of one size, 0 = no plane. They become one [`Contingency`] table, which
 //! every measure reads. Labels are names only: which number a plane has changes nothing, and the
@@ -22,12 +22,14 @@
 mod contingency;
 mod equations;
 mod evops;
+mod partial;
 mod partition;
 mod segcomp;
 
 pub use contingency::{Contingency, Overlap, Region};
 pub use equations::{PlaneError, adjacent, angle_errors, plane_error, plane_errors};
 pub use evops::{Evops, IOU_FULL, IOU_PART, evops};
+pub use partial::{Fate, NOT_PLANAR, Partial, Surface, SurfaceCounts, UNLABELLED, partial};
 pub use partition::{Partition, partition};
 pub use segcomp::{SegComp, Split, Tolerance, segcomp};
 

@@ -7,6 +7,7 @@ mod evops;
 mod kinect;
 mod middlebury;
 mod nyu_dpd;
+mod real;
 mod scenes;
 mod segcomp_abw;
 mod sr4000;
@@ -22,6 +23,8 @@ use std::path::{Path, PathBuf};
 
 /// All sets.
 pub(crate) const DATASETS: &[Dataset] = &[
+    real::DATASET,
+    real::WITH_PRESETS,
     middlebury::DATASET,
     kinect::DATASET,
     segcomp_abw::DATASET,
@@ -65,6 +68,9 @@ pub(crate) struct TruthOf {
     pub(crate) from: u16,
     /// Where the planes are in space, if that is known.
     pub(crate) planes: Vec<depthplanes::scene::TruthPlane>,
+    /// Where only some surfaces are labelled: groups of labels that are one plane. Measures that take what is not
+    /// labelled for "no plane" make no sense then.
+    pub(crate) partial: Option<Vec<Vec<u16>>>,
 }
 
 /// A word that names a set: `NAME` within the folder of sets, `NAME=DIR`, or `scene:SPEC`.
@@ -155,6 +161,6 @@ fn options(encoding: Option<&str>, noise: Option<SensorNoise>) -> ReadOptions {
 fn truth(path: PathBuf, from: u16) -> Load<TruthOf> {
     Box::new(move || {
         let labels = read_labels(&path, &DecodeOptions::default())?;
-        Ok(TruthOf { labels, from, planes: Vec::new() })
+        Ok(TruthOf { labels, from, planes: Vec::new(), partial: None })
     })
 }

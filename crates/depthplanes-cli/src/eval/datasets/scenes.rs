@@ -21,7 +21,7 @@ pub(super) fn items(spec: &str) -> Outcome<Vec<Item>> {
 fn truth(spec: &str) -> Outcome<TruthOf> {
     let truth = spec.parse::<Spec>()?.frame()?.truth;
     let labels = LabelImage { width: truth.width, height: truth.height, labels: truth.labels, warnings: Vec::new() };
-    Ok(TruthOf { labels, from: 1, planes: truth.planes })
+    Ok(TruthOf { labels, from: 1, planes: truth.planes, partial: None })
 }
 
 /// Most seeds of a range.

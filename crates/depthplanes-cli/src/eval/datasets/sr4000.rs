@@ -46,6 +46,7 @@ fn colours(path: PathBuf) -> Load<TruthOf> {
         let is_plane = |&(&grey, &count): &(&u16, &usize)| count >= LEAST && grey > DARK && grey < 255;
         let numbers: BTreeMap<u16, u16> = counts.iter().filter(is_plane).map(|(&grey, _)| grey).zip(1..).collect();
         let labels = greys.iter().map(|grey| numbers.get(grey).copied().unwrap_or(0)).collect();
-        Ok(TruthOf { labels: LabelImage { width, height, labels, warnings }, from: 1, planes: Vec::new() })
+        let labels = LabelImage { width, height, labels, warnings };
+        Ok(TruthOf { labels, from: 1, planes: Vec::new(), partial: None })
     })
 }

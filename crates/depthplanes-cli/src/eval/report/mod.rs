@@ -1,4 +1,5 @@
-//! The report of an evaluation: one page that opens without a network, the same as Markdown, and the rows as CSV and JSON.
+//! The report of an evaluation: one page that opens without a network, the same as Markdown, the rows as CSV and JSON, and
+//! the tables as JSON.
 //!
 //! In: the rows, and the maps for their pictures. Out: files, each written whole.
 
@@ -37,11 +38,14 @@ pub(super) struct Section {
 pub(super) fn write(title: &str, folder: &Path, rows: &[&Row], sections: &[Section]) -> Outcome<Vec<String>> {
     let page = Page { title, facts: facts(rows), sections, refusals: refusals(rows) };
     let json = serde_json::to_string_pretty(rows).expect("rows are plain values");
+    let tables: Vec<_> = sections.iter().flat_map(|section| &section.tables).map(Table::json).collect();
+    let tables = serde_json::to_string_pretty(&tables).expect("tables are plain text");
     let files = [
         ("report.html", html::page(&page)),
         ("report.md", markdown(&page)),
         ("rows.csv", table::csv(rows)),
         ("rows.json", json + "\n"),
+        ("tables.json", tables + "\n"),
     ];
     let mut written = Vec::new();
     for (name, text) in files {
@@ -75,7 +79,7 @@ pub(super) fn by_dataset(folder: &Path, rows: &[&Row], items: &[Item]) -> Outcom
         sections.push(Section {
             title: dataset.clone(),
             text: String::new(),
-            tables: vec![table::of(&dataset, &own)],
+            tables: std::iter::once(table::of(&dataset, &own)).chain(table::by_map(&dataset, &own)).collect(),
             plots: [plots::correct_by_tolerance(&own), plots::three_measures(&own)].into_iter().flatten().collect(),
             strips: strips::of_maps(folder, &own, maps, None)?,
         });
