@@ -14,10 +14,14 @@ ROUNDS ?= 31
 # Folder of the sets of `eval`, those of its sets with a truth that are there, runs of each method on each map.
 DATA ?= ../shared/data
 set = $(if $(wildcard $(DATA)/$(2)),$(1))
-SETS ?= $(call set,segcomp-abw,gt_segcomp_abw) $(call set,middlebury,middlebury) $(call set,synpeb,gt_synpeb) \
+SETS ?= $(call set,real,gt_real) $(call set,segcomp-abw,gt_segcomp_abw) $(call set,middlebury,middlebury) $(call set,synpeb,gt_synpeb) \
 	$(call set,evops,gt_evops) $(call set,nyu-dpd,gt_nyu_dpd) $(call set,sr4000,gt_sr4000_dpd) \
 	scene:random:seed=201-206,sensor=kinect_white scene:random:seed=201-206,sensor=tof_white
 REPEAT ?= 3
+# Further sets of docs/results.md, and all methods.
+MORE_SETS = $(call set,real-presets,gt_real) $(call set,7scenes,video_7scenes) $(call set,tsdf,video_tsdf_fusion) \
+	$(call set,kinect,kinect_v1)
+METHODS ?= planar,ngaf,ransac,ppdfdm,fpdidm,hough,normals,mdl,gradient
 # Name of this machine's folder of benchmark records.
 MACHINE ?= $(shell scripts/machine)
 
@@ -29,7 +33,7 @@ CARGO_FUZZ := target/tools/bin/cargo-fuzz
 say = @printf '\n== %s\n' '$(1)'
 
 .NOTPARALLEL:
-.PHONY: help demo test lint fmt format clippy rust-tests rustdoc oracles bench bench-planar tables peers golden fuzz clean
+.PHONY: help demo test lint fmt format clippy rust-tests rustdoc oracles bench bench-planar tables peers results golden fuzz clean
 
 help: ## List the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -90,6 +94,14 @@ peers: $(PEERS) ## Run Open3D, pyransac3d and cc3d beside ours on SETS; writes o
 	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes-cli
 	target/release/depthplanes eval $(SETS) --data '$(DATA)' --methods planar,ngaf,ransac \
 		--peers '.venv-peers/bin/python benchmarks/peers.py' --repeat $(REPEAT) --report out/peers
+
+results: ## Write docs/results.md and the README's table of methods anew: METHODS on all sets of DATA, some minutes
+	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes-cli
+	rm -rf out/results
+	target/release/depthplanes eval $(SETS) $(MORE_SETS) --data '$(DATA)' --methods $(METHODS) --repeat 1 --report out/results
+	scripts/results out/results/report.md docs/results.md
+	DEPTHPLANES_GOLDEN=update $(CARGO) test --package depthplanes-cli --test docs the_tables_of_the_readme
+	git status --short
 
 golden: ## Write golden files, the outputs shown in the docs and their pictures anew; look at the difference
 	DEPTHPLANES_GOLDEN=update $(CARGO) test --workspace

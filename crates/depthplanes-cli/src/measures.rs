@@ -120,9 +120,11 @@ pub(crate) const MEASURES: &[Measure] = &[
 /// on its size: below 3,000 pixels it is mostly border, above 10,000 the smooth part of the error shows.
 const SURFACES: [(&str, u64); 3] = [("surfaces", 1), ("surfaces_3000", 3000), ("surfaces_10000", 10_000)];
 
+type OfSurfaces = fn(&SurfaceCounts) -> u64;
+
 /// Counts of a family.
 #[rustfmt::skip]
-const COUNTS: [(&str, fn(&SurfaceCounts) -> u64); 8] = [
+const COUNTS: [(&str, OfSurfaces); 8] = [
     ("all", |counts| counts.surfaces),
     ("correct", |counts| counts.correct),
     ("merged", |counts| counts.merged),

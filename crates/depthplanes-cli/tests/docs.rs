@@ -146,8 +146,8 @@ fn the_tables_of_the_readme_are_the_libraries_tables() {
     }
 }
 
-/// Heading and rows of a table: each method with its correct planes on each set of docs/results.md, and its time on the
-/// first.
+/// Heading and rows of a table: each method with its correct planes on each set of docs/results.md, on frames of real
+/// cameras the share of the labelled surfaces, and its time on the first.
 fn results() -> [Vec<String>; 2] {
     let text = std::fs::read_to_string(root().join("docs/results.md")).unwrap();
     let mut heading = "| method |".to_string();
@@ -158,14 +158,20 @@ fn results() -> [Vec<String>; 2] {
         let mut lines = section.lines().filter(|line| line.starts_with('|'));
         let head = cells(lines.next().expect("a table in each section"));
         let column = |name: &str| head.iter().position(|cell| cell == name);
-        let (Some(truth), Some(correct), Some(time)) = (column("truth"), column("correct"), column("ms/MP")) else {
-            continue; // a set without a truth
+        let (truth, what, correct, unit) = match (column("truth"), column("surfaces")) {
+            (Some(truth), _) => (truth, "planes", column("correct").unwrap(), ""),
+            (_, Some(surfaces)) => (surfaces, "surfaces", column("correct %").unwrap(), " %"),
+            _ => continue, // a set without a truth
         };
+        let (set, time) = (section.lines().next().unwrap(), column("ms/MP").unwrap());
+        if set == "real-presets" {
+            continue; // the frames of `real` again
+        }
         let lines: Vec<Vec<String>> = lines.skip(1).map(cells).collect();
-        heading += &format!(" {}, {} planes |", section.lines().next().unwrap(), lines[0][truth]);
+        heading += &format!(" {set}, {} {what} |", lines[0][truth]);
         for ((method, row), ms) in METHODS.iter().zip(&mut rows).zip(&mut times) {
             let line = lines.iter().find(|line| line[1] == method.name).expect("a row for each method");
-            *row += &format!(" {} |", line[correct]);
+            *row += &format!(" {}{unit} |", line[correct]);
             if ms.is_empty() {
                 *ms = format!(" {} |", line[time]);
             }

@@ -96,5 +96,32 @@ fn every_set_of_recorded_maps_is_read() {
         assert!(scored(set).0 > 0, "{set}");
     }
     assert!(scored("segcomp-abw").1 >= 150.0, "{:?}", scored("segcomp-abw"));
+    frames_of_real_cameras_are_measured(&bench, &all);
     sets.iter().for_each(|set| println!("{set}: {:?}", scored(set)));
+}
+
+/// What stands in the report for partial truths and for sequences, by the names that the page of measures has.
+fn frames_of_real_cameras_are_measured(bench: &Bench, all: &[Value]) {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/metrics.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let mut surfaces = 0.0;
+    for row in all.iter().filter(|row| row["dataset"] == "real") {
+        let scores = row["outcome"]["found"]["scores"].as_object().unwrap();
+        assert_eq!(scores.len(), 26, "{row}");
+        scores.keys().for_each(|name| assert!(page.contains(&format!("`{name}`")), "docs/metrics.md lacks {name}"));
+        surfaces += scores["surfaces.all"].as_f64().unwrap();
+    }
+    let tables: Vec<Value> = serde_json::from_slice(&bench.read("report/tables.json")).unwrap();
+    let line = |title: &str, head: &str| {
+        let table = tables.iter().find(|table| table["title"] == title).unwrap_or_else(|| panic!("no table {title}"));
+        let column = table["head"].as_array().unwrap().iter().position(|cell| cell == head).unwrap();
+        table["rows"][0][column].as_str().unwrap().to_string()
+    };
+    assert_eq!((surfaces, line("real", "surfaces").as_str()), (116.0, "116"));
+    assert!(line("real", "correct %").parse::<f64>().unwrap() >= 35.0);
+    assert_eq!(line("real, map by map", "map"), "cape_tunnel");
+    assert_eq!(line("7scenes, from frame to frame", "pairs of frames"), "39");
+    assert!(line("tsdf, from frame to frame", "IoU").parse::<f64>().unwrap() >= 0.6);
+    let report = String::from_utf8(bench.read("report/report.html")).unwrap();
+    assert!(report.contains("10k correct %") && report.contains("from frame to frame"));
 }

@@ -1,5 +1,6 @@
 //! A label image against the truth: SegComp, EVOPS, and the partition measures of the PlaneNet
-//! family; against a truth of some surfaces only ([`partial`]); planes' equations against known ones.
+//! family; against a truth of some surfaces only ([`partial`]); planes' equations against known ones; and label images of
+//! a sequence of frames against each other ([`Sequence`]).
 //!
 //! In: two label images of one size, 0 = no plane. They become one [`Contingency`] table, which
 //! every measure reads. Labels are names only: which number a plane has changes nothing, and the
@@ -25,6 +26,7 @@ mod evops;
 mod partial;
 mod partition;
 mod segcomp;
+mod sequence;
 
 pub use contingency::{Contingency, Overlap, Region};
 pub use equations::{PlaneError, adjacent, angle_errors, plane_error, plane_errors};
@@ -32,6 +34,7 @@ pub use evops::{Evops, IOU_FULL, IOU_PART, evops};
 pub use partial::{Fate, NOT_PLANAR, Partial, Surface, SurfaceCounts, UNLABELLED, partial};
 pub use partition::{Partition, partition};
 pub use segcomp::{SegComp, Split, Tolerance, segcomp};
+pub use sequence::{NextFrame, STEADY_PIXELS, Sequence, next_frame};
 
 /// A truth plane and the predicted plane that stands for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use super::{Dataset, Item, files, name_of, options, reading};
 use crate::failure::Outcome;
-use depthplanes_io::camera_file::read_camera;
+use depthplanes_io::camera_file::{CameraFile, read_camera};
 use std::path::{Path, PathBuf};
 
 pub(super) const DATASET: Dataset = Dataset {
@@ -20,15 +20,27 @@ const CAMERAS: [&str; 6] =
 /// Lists that stand in a folder of TUM's layout.
 const LISTS: [&str; 4] = ["depth.txt", "associations.txt", "depth_associations.txt", "groundtruth.txt"];
 /// What 7-Scenes writes where nothing was measured; no such camera sees 65.5 m.
-const MISSING: f64 = 65535.0;
+pub(super) const MISSING: f64 = 65535.0;
+
+/// The camera file of a folder, if it has one.
+///
+/// # Errors
+/// A camera file that cannot be read.
+pub(super) fn camera(folder: &Path) -> Outcome<Option<CameraFile>> {
+    Ok(one_of(folder, &CAMERAS).map(read_camera).transpose()?)
+}
+
+/// The first of these files that is in a folder.
+fn one_of(folder: &Path, names: &[&str]) -> Option<PathBuf> {
+    names.iter().map(|name| folder.join(name)).find(|path| path.is_file())
+}
 
 fn items(folder: &Path) -> Outcome<Vec<Item>> {
-    let is_there = |names: &[&str]| names.iter().map(|name| folder.join(name)).find(|path| path.is_file());
     let within = folder.join("depth");
-    let is_tum = within.is_dir() && is_there(&LISTS).is_some();
+    let is_tum = within.is_dir() && one_of(folder, &LISTS).is_some();
     let mut options = options(Some(if is_tum { "tum" } else { "millimetre" }), None);
-    if let Some(camera) = is_there(&CAMERAS) {
-        options = options.camera(&read_camera(&camera)?);
+    if let Some(camera) = camera(folder)? {
+        options = options.camera(&camera);
     }
     let maps = match within.is_dir() {
         true => files(&within, |name| name.ends_with(".png"))?,
@@ -40,7 +52,13 @@ fn items(folder: &Path) -> Outcome<Vec<Item>> {
         options.missing = (file.starts_with("frame-") && file.ends_with(".depth.png")).then_some(MISSING);
         // Several folders may be asked for at once.
         let dataset = format!("{} {}", DATASET.name, name_of(folder));
-        Item { dataset, name: file.replace(".png", ""), frame: reading(depth, options), truth: None }
+        Item {
+            dataset,
+            name: file.replace(".png", ""),
+            frame: reading(depth, options),
+            truth: None,
+            is_sequence: false,
+        }
     };
     Ok(maps.into_iter().map(item).collect())
 }

@@ -32,7 +32,7 @@ fn items(folder: &Path) -> Outcome<Vec<Item>> {
         let mut options = options(None, None);
         options.disparity = true;
         let (frame, truth) = (reading(map, options), derived.map(|path| truth(path, 1)));
-        found.push(Item { dataset: DATASET.name.into(), name: name_of(scene), frame, truth });
+        found.push(Item { dataset: DATASET.name.into(), name: name_of(scene), frame, truth, is_sequence: false });
     }
     Ok(found)
 }

@@ -12,6 +12,7 @@ mod scenes;
 mod segcomp_abw;
 mod sr4000;
 mod synpeb;
+mod video;
 
 use crate::failure::{Failure, Outcome};
 use crate::natural;
@@ -32,6 +33,8 @@ pub(crate) const DATASETS: &[Dataset] = &[
     synpeb::DATASET,
     sr4000::DATASET,
     evops::DATASET,
+    video::SEVEN_SCENES,
+    video::TSDF,
 ];
 
 /// One row of [`DATASETS`].
@@ -59,6 +62,8 @@ pub(crate) struct Item {
     pub(crate) name: String,
     pub(crate) frame: Load<Frame>,
     pub(crate) truth: Option<Load<TruthOf>>,
+    /// Whether the maps of its set are frames of one recording in their order.
+    pub(crate) is_sequence: bool,
 }
 
 /// The truth of a map.
@@ -131,7 +136,13 @@ fn beside_labels(
         let name = name_of(&depth).replace(depth_ends, "");
         let labels = needed(depth.with_file_name(format!("{name}{labels_end}")), &depth)?;
         let options = ReadOptions { intrinsics: Some(camera), ..options(Some("tum"), None) };
-        Ok(Item { dataset: dataset.into(), name, frame: reading(depth, options), truth: Some(truth(labels, 1)) })
+        Ok(Item {
+            dataset: dataset.into(),
+            name,
+            frame: reading(depth, options),
+            truth: Some(truth(labels, 1)),
+            is_sequence: false,
+        })
     };
     files(folder, |name| name.ends_with(depth_ends))?.into_iter().map(item).collect()
 }

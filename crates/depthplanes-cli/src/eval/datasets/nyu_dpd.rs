@@ -30,7 +30,7 @@ fn items(folder: &Path) -> Outcome<Vec<Item>> {
         let labels = needed(folder.join("labels").join(name_of(&depth)), &depth)?;
         let options = options(Some("millimetre"), Some(NOISE));
         let frame = Box::new(move || turned(&depth, &options));
-        Ok(Item { dataset: DATASET.name.into(), name, frame, truth: Some(truth(labels, 1)) })
+        Ok(Item { dataset: DATASET.name.into(), name, frame, truth: Some(truth(labels, 1)), is_sequence: false })
     };
     files(&depth, |name| name.ends_with(".png"))?.into_iter().map(item).collect()
 }

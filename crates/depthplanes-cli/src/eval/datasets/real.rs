@@ -52,7 +52,7 @@ fn items(folder: &Path, dataset: &str, with_preset: bool) -> Outcome<Vec<Item>> 
         let mut options = options(&told, folder).map_err(|failure| failure.of_input(&about.display().to_string()))?;
         options.preset = with_preset.then_some(told.preset);
         let frame = reading(depth, options);
-        Ok(Item { dataset: dataset.into(), name, frame, truth: Some(truth(labels, told.coplanar)) })
+        Ok(Item { dataset: dataset.into(), name, frame, truth: Some(truth(labels, told.coplanar)), is_sequence: false })
     };
     files(folder, |name| name.ends_with(".depth.png"))?.into_iter().map(item).collect()
 }

@@ -13,7 +13,13 @@ pub(super) fn items(spec: &str) -> Outcome<Vec<Item>> {
         let name = format!("scene:{spec}");
         let of_truth = spec.clone();
         let frame = Box::new(move || load::scene(&spec));
-        Ok(Item { dataset: "scenes".into(), name, frame, truth: Some(Box::new(move || truth(&of_truth))) })
+        Ok(Item {
+            dataset: "scenes".into(),
+            name,
+            frame,
+            truth: Some(Box::new(move || truth(&of_truth))),
+            is_sequence: false,
+        })
     };
     seeds(spec)?.into_iter().map(item).collect()
 }

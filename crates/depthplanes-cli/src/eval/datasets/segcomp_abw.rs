@@ -28,7 +28,7 @@ fn items(folder: &Path) -> Outcome<Vec<Item>> {
         let mut options = options(None, noise);
         (options.scale, options.intrinsics) = (Some(10_000.0), Some(camera));
         let frame = reading(depth, options);
-        Ok(Item { dataset: DATASET.name.into(), name, frame, truth: Some(truth(labels, 10)) })
+        Ok(Item { dataset: DATASET.name.into(), name, frame, truth: Some(truth(labels, 10)), is_sequence: false })
     };
     files(folder, |name| name.ends_with(".depth.png"))?.into_iter().map(item).collect()
 }

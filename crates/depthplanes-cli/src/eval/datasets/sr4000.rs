@@ -31,7 +31,7 @@ fn items(folder: &Path) -> Outcome<Vec<Item>> {
         let start = format!("{name}_GT");
         let truth = pictures.iter().find(|path| name_of(path).starts_with(&start)).ok_or_else(lacks)?.clone();
         let frame = reading(map, options(Some("grey"), Some(NOISE)));
-        Ok(Item { dataset: DATASET.name.into(), name, frame, truth: Some(colours(truth)) })
+        Ok(Item { dataset: DATASET.name.into(), name, frame, truth: Some(colours(truth)), is_sequence: false })
     };
     files(folder, |name| name.ends_with(".bmp") && !name.contains("_GT"))?.into_iter().map(item).collect()
 }

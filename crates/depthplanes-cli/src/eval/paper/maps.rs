@@ -69,7 +69,7 @@ impl Source {
             }
             None => Box::new(move || load::scene(scene)),
         };
-        Item { dataset: set.into(), name: self.name(), frame, truth: None }
+        Item { dataset: set.into(), name: self.name(), frame, truth: None, is_sequence: false }
     }
 }
 

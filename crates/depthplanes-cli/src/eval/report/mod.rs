@@ -5,6 +5,7 @@
 
 mod html;
 pub(super) mod plots;
+mod sequence;
 pub(super) mod strips;
 pub(super) mod table;
 
@@ -79,7 +80,14 @@ pub(super) fn by_dataset(folder: &Path, rows: &[&Row], items: &[Item]) -> Outcom
         sections.push(Section {
             title: dataset.clone(),
             text: String::new(),
-            tables: std::iter::once(table::of(&dataset, &own)).chain(table::by_map(&dataset, &own)).collect(),
+            tables: [
+                Some(table::of(&dataset, &own)),
+                sequence::of(folder, &dataset, &own, items)?,
+                table::by_map(&dataset, &own),
+            ]
+            .into_iter()
+            .flatten()
+            .collect(),
             plots: [plots::correct_by_tolerance(&own), plots::three_measures(&own)].into_iter().flatten().collect(),
             strips: strips::of_maps(folder, &own, maps, None)?,
         });
