@@ -7,6 +7,7 @@
 
 mod estimate;
 mod ray;
+pub(crate) mod scales;
 mod steps;
 mod table;
 
@@ -105,6 +106,9 @@ pub struct NoiseModel {
     is_scatter: bool,
     /// How well the ray of a pixel is known, pixels; 0 where nobody asks.
     ray: f64,
+    /// The smooth part of the error, and what of the ray's part is smooth.
+    smooth: SensorNoise,
+    smooth_ray: f64,
 }
 
 /// What rounding to steps may do, in steps, to all pixels of a small patch at once: on a slow ramp they lie on one
@@ -123,7 +127,12 @@ impl NoiseModel {
             (Measure::Disparity, SensorNoise::Value { .. }) => (f64::NAN, f64::NAN),
             (Measure::Disparity, _) => return None,
         };
-        Some(NoiseModel { noise, space: Space::of(measure), slope, offset, step, is_scatter: false, ray: 0.0 })
+        let smooth = match noise {
+            SensorNoise::Value { .. } => SensorNoise::Value { sigma: 0.0 },
+            _ => SensorNoise::Depth { base: 0.0, growth: 0.0 },
+        };
+        let space = Space::of(measure);
+        Some(NoiseModel { noise, space, slope, offset, step, is_scatter: false, ray: 0.0, smooth, smooth_ray: 0.0 })
     }
 
     /// The same, its noise being the scatter that a map shows, with what rounding does on average.
@@ -134,6 +143,21 @@ impl NoiseModel {
     /// The same for rays that are known to within `ray` pixels, one standard deviation.
     pub(crate) fn with_ray(self, ray: f64) -> Self {
         NoiseModel { ray, ..self }
+    }
+
+    /// The same with a smooth part, of the same kind as the noise.
+    pub(crate) fn with_smooth(self, smooth: SensorNoise, smooth_ray: f64) -> Self {
+        NoiseModel { smooth, smooth_ray, ..self }
+    }
+
+    /// Pixels of the ray whose error is smooth.
+    pub(crate) fn smooth_ray(&self) -> f64 {
+        self.smooth_ray
+    }
+
+    /// Standard deviation of the smooth part of q.
+    pub(crate) fn smooth_sigma(&self, q: f64) -> f64 {
+        NoiseModel { noise: self.smooth, ..*self }.sensor_sigma(q)
     }
 
     /// How well the ray of a pixel is known, pixels, one standard deviation; it is no part of [`NoiseModel::variance`],
@@ -173,6 +197,20 @@ impl NoiseModel {
                 *variance = with(q.into(), (growth + base * p * p) * per_slope);
             }),
             SensorNoise::Table(_) => each.for_each(|(&q, variance)| *variance = self.variance(q.into()) as f32),
+        }
+    }
+
+    /// Variances of the smooth part of many, of which the slopes are given as well: with what a rounding is that all of a
+    /// cell of `side` pixels share.
+    #[inline(always)]
+    pub(crate) fn smooth_variances(&self, q: &[f32], a: &[f32], b: &[f32], side: f64, variances: &mut [f32]) {
+        for (((&q, &a), &b), variance) in q.iter().zip(a).zip(b).zip(variances) {
+            let q = f64::from(q);
+            let slope = f64::from(a) * f64::from(a) + f64::from(b) * f64::from(b);
+            let sigma = self.smooth_sigma(q);
+            let step = self.step * self.space.unit(q);
+            let rounding = step * step / 12.0 * (step * step / (step * step + side * side * slope + f64::MIN_POSITIVE));
+            *variance = (sigma * sigma + self.smooth_ray * self.smooth_ray * slope + rounding) as f32;
         }
     }
 

@@ -7,24 +7,38 @@ use super::grid::each_run;
 use super::grow::Region;
 use super::pyramid::Pyramid;
 use super::quadratic::{Frame, Sums};
+use super::thresholds::{BOW, BOW_VARIANCES, TURN_ERROR};
+use crate::fit::Moments;
 use crate::group::reserve_to;
-
-/// Largest root mean square, in noise deviations of a pixel, of a plane's bow. Noise alone gives a region of
-/// 240 pixels 0.11 (three terms of a quadratic).
-const BOW: f64 = 0.375;
-/// Pixels from which on a sensor's own distortion counts: it bows a plane the more, the larger its picture. What is so
-/// large is no facet beside others either.
-pub(super) const LARGE: f64 = 4000.0;
-
-/// [`BOW`] for a region of so many pixels; it grows with the root of the region's side.
-pub(super) fn most_bow(pixels: f64) -> f64 {
-    BOW * (pixels / LARGE).max(1.0).sqrt().sqrt()
-}
+use crate::methods::rays::{Rays, dot};
 
 /// Fewest pixels of a region whose bow means something.
 pub(super) const LEAST: f64 = 240.0;
 /// Cells of a region that are enough to see its shape: where so many coarse ones lie in it, finer ones are not looked at.
 const PLENTY: f64 = 40.0;
+
+/// Degrees between the normals of a quadratic at 1.5 standard deviations of a region's extent to either side of its middle.
+fn turn_of(region: &Region, quadratic: &[f64; 6], rays: &Rays) -> f64 {
+    let frame = Frame::of(region);
+    let Moments { n, u, v, uu, uv, vv, .. } = region.sums;
+    let (uu, uv, vv) = (uu / n - u * u / n / n, uv / n - u * v / n / n, vv / n - v * v / n / n);
+    let (half, root) = ((uu + vv) / 2.0, (((uu - vv) / 2.0).powi(2) + uv * uv).sqrt());
+    let angle = 0.5 * (2.0 * uv).atan2(uu - vv);
+    let axes = [([angle.cos(), angle.sin()], half + root), ([-angle.sin(), angle.cos()], (half - root).max(0.0))];
+    let turn = |([x, y], variance): ([f64; 2], f64)| {
+        let reach = 1.5 * variance.sqrt();
+        let [a, b] = [-reach, reach].map(|way| {
+            let place @ [pu, pv] = [region.middle[0] + way * x, region.middle[1] + way * y];
+            let (slopes, off) = frame.slopes(quadratic, place);
+            let [a, b] = [region.abc[0] + slopes[0], region.abc[1] + slopes[1]];
+            let q = region.at(pu, pv) + off;
+            rays.inverse([a, b], |u, v| q + a * (u - pu) + b * (v - pv))
+        });
+        let cosine = dot(a, b) / (dot(a, a) * dot(b, b)).sqrt();
+        cosine.clamp(-1.0, 1.0).acos().to_degrees()
+    };
+    axes.map(turn).into_iter().fold(0.0, f64::max)
+}
 
 /// No level yet.
 const OPEN: u8 = u8::MAX;
@@ -78,16 +92,21 @@ impl Bows {
         self.levels[id as usize].into()
     }
 
-    /// Whether its bow is more than [`BOW`] allows.
-    pub(super) fn is_bowed(&self, id: u32) -> bool {
-        let pixels = self.sums[id as usize].pixels;
-        pixels >= LEAST && self.gain(id) > most_bow(pixels).powi(2) * pixels
+    /// Whether it bows, and turns by `least` degrees, by more than the sensor's smooth error may make it.
+    pub(super) fn is_bowed(&self, id: u32, region: &Region, rays: &Rays, least: f64) -> bool {
+        let Some([bow, most]) = self.rms(id, region) else { return false };
+        if self.gain(id) < BOW_VARIANCES || bow <= most {
+            return false;
+        }
+        let share = 1.0 - TURN_ERROR / BOW * most / bow;
+        share * turn_of(region, &self.sums[id as usize].solve::<6>(), rays) > least
     }
 
-    /// Root mean square of a plane's bow, in noise deviations of a pixel, and the most that is taken for flat; none for
-    /// a region that is too small to tell.
-    pub(super) fn rms(&self, id: u32) -> Option<[f64; 2]> {
+    /// Root mean square of a region's bow, in deviations of a pixel, and the most that is taken for flat; none for one that
+    /// is too small to tell.
+    pub(super) fn rms(&self, id: u32, region: &Region) -> Option<[f64; 2]> {
         let pixels = self.sums[id as usize].pixels;
-        (pixels >= LEAST).then(|| [(self.gain(id).max(0.0) / pixels).sqrt(), most_bow(pixels)])
+        (pixels >= LEAST)
+            .then(|| [(self.gain(id).max(0.0) / pixels).sqrt(), BOW * (region.smooth / region.variance).sqrt()])
     }
 }

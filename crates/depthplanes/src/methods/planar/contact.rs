@@ -4,7 +4,7 @@
 //! on a strip thinner than a tile two pieces of a floor may meet that had no tiles side by side.
 
 use super::grow::Region;
-use super::merge::{BEND, bend};
+use super::merge::bend;
 use super::planes::BENT;
 use super::seams::Seams;
 use crate::group::{reserve_to, vectorised};
@@ -87,12 +87,12 @@ impl Contacts {
         let region = |label: u16| usize::from(label) - 1;
         pairs.retain(|pair| {
             let [a, b] = pair.map(region);
-            bend(&all[a], &all[b]) <= BEND
+            bend(&all[a], &all[b]) <= 1.0
         });
         let mut any = false;
         for pair in pairs.iter() {
             let [a, b] = pair.map(|label| root(into, label));
-            if a != b && bend(&all[region(a)], &all[region(b)]) <= BEND {
+            if a != b && bend(&all[region(a)], &all[region(b)]) <= 1.0 {
                 let other = all[region(b)];
                 all[region(a)].absorb(&other);
                 into[usize::from(b)] = a;

@@ -6,15 +6,16 @@
 //! is around it, one quadratic runs on smoothly, while the crease of two planes leaves it far off: the best
 //! parabola through a roof misses its ridge by 3/16 of the height. And a small region continues a curved one.
 
-use super::bows::{Bows, LARGE, LEAST};
+use super::bows::Bows;
 use super::grid::{Grid, NONE, Place, each_run};
 use super::grow::{Region, Regions};
 use super::merge::Pair;
 use super::pyramid::Pyramid;
 use super::quadratic::{Frame, Sums};
+use super::thresholds::{Allowance, GENTLE, GENTLE_SHARE, GENTLE_SIZE, JOINT_GAIN, JOINT_MISS, LOOSE_MISS, TURN};
 use super::turns::Border;
 use crate::group::reserve_to;
-use crate::methods::rays::Rays;
+use crate::methods::rays::{Rays, dot};
 use crate::noise::NoiseModel;
 use crate::parallel::{Numbered, in_parts};
 
@@ -22,25 +23,20 @@ use crate::parallel::{Numbered, in_parts};
 const ENOUGH: f64 = 12.0;
 /// Fewest cells of each side of a joint.
 const FEW: f64 = 4.0;
-/// Largest mean square, in variances of a pixel, by which cell means may miss a quadratic that explains them.
-const SMOOTH: f64 = 0.12;
-/// The same for a small region beside one that is known to be curved.
-const LOOSE: f64 = 0.4;
-/// Variances by which the quadratic has to explain both better than their two planes do: three deviations.
-const GAIN: f64 = 9.0;
 /// Standard deviations between two planes where they touch, from which on they are two surfaces.
 const STEP: f64 = 6.0;
 /// Pixels below which a region's surroundings are looked at as well: its neighbours may be too small for regions.
 const SMALL: f64 = 1000.0;
+/// Pixels from which on a region is no facet of a mesh or a ball beside others of them, unless it bows itself.
+const LARGE: f64 = 4000.0;
 /// Share of the squares about a plane that a quadratic may leave around a small region: half of what it leaves of
 /// a surface that turns off at a crease.
 const CREASE: f64 = 0.03;
+/// Deviations of a pixel from a small region's plane up to which a tile around it is looked at: a quadratic through a roof
+/// that rises d to each side is 0.07 d off, root mean square.
+const NEAR: f64 = 20.0;
 /// How far around, in tiles.
 const RING: usize = 1;
-/// Standard deviations between two planes in the middle of the smaller region, from which on they meet in a crease:
-/// a quadratic through a roof that rises d to each side is 0.07 d off, root mean square.
-const SHARP: f64 = 20.0;
-
 /// Columns and rows of cells around a region.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CellBox {
@@ -81,6 +77,7 @@ pub(super) struct Facets {
     pub(super) signs: Vec<Option<Sign>>,
     /// For each pair of regions what is known of its joint.
     joints: Vec<Option<SmoothJoint>>,
+    folds: Vec<Fold>,
 }
 
 /// Two regions through which one quadratic runs.
@@ -103,8 +100,8 @@ pub(super) enum Sign {
     Surroundings,
     /// Off its border the surface goes on and turns gently.
     Turns,
-    /// It is small and continues a curved neighbour.
-    Continues,
+    /// It and neighbours of its size turn gently where they meet, and it bows or is small.
+    Folds,
 }
 
 /// What is known of the sensor.
@@ -139,36 +136,76 @@ impl Facets {
         let cells = pyramid.grids[0].len();
         reserve_to(&mut self.signs, cells);
         reserve_to(&mut self.joints, 4 * cells);
-        let Facets { bows, boxes, signs, joints } = self;
-        let is_bowed = |(id, is_strip): (u32, &bool)| !is_strip && bows.is_bowed(id);
+        reserve_to(&mut self.folds, cells);
+        let Facets { bows, boxes, signs, joints, folds } = self;
+        let is_bowed =
+            |(id, is_strip): (u32, &bool)| !is_strip && bows.is_bowed(id, &regions.all[id as usize], rays, TURN);
         signs.extend((0..).zip(is_strip).map(|region| is_bowed(region).then_some(Sign::Bow)));
         let scene = Scene { pyramid, all: &regions.all, noise, is_strip, boxes, bows };
         scene.find_joints(pairs, joints, signs, threads);
+        scene.measure_folds(pairs, rays, folds);
         let look_around = |part: Numbered<'_, Option<Sign>>| {
             for (id, sign) in (part.first..).zip(part.all).filter(|(id, sign)| sign.is_none() && !is_strip[*id]) {
-                let pixels = scene.all[id].sums.n;
-                let border = Border { grid: &pyramid.grids[0], all: scene.all, rays, id: id as u32 };
-                if pixels < SMALL && scene.surroundings(id as u32).bends() {
+                let (region, number) = (&scene.all[id], id as u32);
+                let is_small = region.sums.n < LARGE;
+                let border = Border { grid: &pyramid.grids[0], all: scene.all, rays, id: number };
+                if region.sums.n < SMALL && scene.surroundings(number).bends() {
                     *sign = Some(Sign::Surroundings);
-                } else if pixels < LARGE && border.turns(&boxes[id]) {
+                } else if is_small && border.turns(&boxes[id]) {
                     *sign = Some(Sign::Turns);
+                } else if folds[id].is_gentle() && (is_small || bows.is_bowed(number, region, rays, 0.0)) {
+                    *sign = Some(Sign::Folds);
                 }
             }
         };
         in_parts(threads, Numbered { first: 0, all: &mut signs[..] }, look_around, |(), ()| ());
-        while scene.spread(pairs, signs) {}
         regions.all.iter_mut().zip(signs).for_each(|(region, sign)| region.is_curved |= sign.is_some());
     }
+}
+
+/// How much of a region's border with others turns gently.
+#[derive(Clone, Copy, Debug, Default)]
+struct Fold {
+    gentle: f64,
+    all: f64,
+}
+
+impl Fold {
+    fn is_gentle(&self) -> bool {
+        self.gentle > 0.0 && self.gentle >= GENTLE_SHARE * self.all
+    }
+}
+
+/// Whether two planes differ by no more than [`GENTLE`] degrees.
+fn turn_gently(a: &Region, b: &Region, rays: &Rays) -> bool {
+    let [m, n] = [a, b].map(|region| rays.inverse([region.abc[0], region.abc[1]], |u, v| region.at(u, v)));
+    let (both, squares) = (dot(m, n), dot(m, m) * dot(n, n));
+    both > 0.0 && both * both >= GENTLE.to_radians().cos().powi(2) * squares
 }
 
 /// Whether there is a step between two regions where they touch.
 pub(super) fn are_apart(all: &[Region], noise: &NoiseModel, pair: &Pair) -> bool {
     let [u, v] = pair.middle();
     let [a, b] = pair.ids.map(|id| all[id as usize].at(u, v));
-    (a - b).powi(2) > STEP * STEP * noise.variance((a + b) / 2.0)
+    let q = (a + b) / 2.0;
+    (a - b).powi(2) > STEP * STEP * (noise.variance(q) + noise.smooth_sigma(q).powi(2))
 }
 
 impl Scene<'_> {
+    /// How much of each region's border turns gently, towards neighbours that are no strips.
+    fn measure_folds(&self, pairs: &[Pair], rays: &Rays, folds: &mut Vec<Fold>) {
+        folds.resize(self.all.len(), Fold::default());
+        for pair in pairs.iter().filter(|pair| !self.has_strip(pair)) {
+            let [a, b] = pair.ids.map(|id| id as usize);
+            let is_gentle = !self.are_apart(pair) && turn_gently(&self.all[a], &self.all[b], rays);
+            for (id, other) in [(a, b), (b, a)] {
+                let counts = is_gentle && self.all[other].sums.n > GENTLE_SIZE * self.all[id].sums.n;
+                folds[id].gentle += if counts { pair.contacts } else { 0.0 };
+                folds[id].all += pair.contacts;
+            }
+        }
+    }
+
     /// Marks the regions that one quadratic joins to a neighbour. On as many threads.
     fn find_joints(
         &self,
@@ -201,10 +238,10 @@ impl Scene<'_> {
         let is_larger = self.boxes[a as usize].area() < self.boxes[b as usize].area();
         let [small, large] = if is_larger { [a, b] } else { [b, a] };
         let is_known = [small, large].iter().all(|&id| signs[id as usize].is_some());
-        if is_known || self.is_sharp(small, large) || self.bows.gain(small) + self.bows.gain(large) < GAIN {
+        if is_known || self.bows.gain(small) + self.bows.gain(large) < JOINT_GAIN.variances {
             return None;
         }
-        let seen = self.joint(small, |id| id == large).is_smooth()?;
+        let seen = self.joint(small, large).is_smooth()?;
         Some(SmoothJoint { small, large, seen })
     }
 
@@ -216,31 +253,6 @@ impl Scene<'_> {
     /// Whether there is a step between two regions where they touch.
     fn are_apart(&self, pair: &Pair) -> bool {
         are_apart(self.all, self.noise, pair)
-    }
-
-    /// Whether two planes part so fast that no quadratic follows both.
-    fn is_sharp(&self, small: u32, large: u32) -> bool {
-        let [small, large] = [small, large].map(|id| &self.all[id as usize]);
-        let [u, v] = small.middle;
-        let q = small.at(u, v);
-        (large.at(u, v) - q).powi(2) > SHARP * SHARP * self.noise.variance(q)
-    }
-
-    /// Marks small regions that continue curved ones; whether there were any.
-    fn spread(&self, pairs: &[Pair], signs: &mut [Option<Sign>]) -> bool {
-        let mut any = false;
-        for pair in pairs.iter().filter(|pair| !self.has_strip(pair)) {
-            let [a, b] = pair.ids.map(|id| id as usize);
-            for (small, other) in [(a, b), (b, a)] {
-                let may_continue = signs[other].is_some() && signs[small].is_none() && self.all[small].sums.n < LEAST;
-                let continues = || self.joint(small as u32, |id| signs[id as usize].is_some()).continues();
-                if may_continue && !self.are_apart(pair) && continues() {
-                    signs[small] = Some(Sign::Continues);
-                    any = true;
-                }
-            }
-        }
-        any
     }
 
     /// Looks at a small region and the flat tiles around it that no large plane explains.
@@ -259,7 +271,7 @@ impl Scene<'_> {
                 if is_own || (grid.roughness[at] <= 1.0 && is_loose()) {
                     let cell = grid.cell(Place { row: row as u32, column: column as u32 });
                     let off = cell.residual_about(plane.abc, plane.origin) / cell.n;
-                    if is_own || off * off <= SHARP * SHARP * cell.variance {
+                    if is_own || off * off <= NEAR * NEAR * cell.variance {
                         sums[usize::from(is_own)].add_run(grid, row, column..column + 1, plane, plane, &frame);
                     }
                 }
@@ -268,8 +280,8 @@ impl Scene<'_> {
         Joint::of(sums)
     }
 
-    /// Looks at a region and at those that `neighbours` names, within its box and as much again on each side.
-    fn joint(&self, small: u32, neighbours: impl Fn(u32) -> bool) -> Joint {
+    /// Looks at a region and at another, within its box and as much again on each side.
+    fn joint(&self, small: u32, large: u32) -> Joint {
         let plane = &self.all[small as usize];
         let level = self.bows.level(small);
         let grid = &self.pyramid.grids[level];
@@ -279,7 +291,7 @@ impl Scene<'_> {
         for row in around.first[1]..=around.last[1] {
             let part = row * grid.columns + around.first[0]..row * grid.columns + around.last[0] + 1;
             each_run(&grid.region[part], around.first[0], |id, columns| {
-                if id == small || neighbours(id) {
+                if id == small || id == large {
                     let own = &self.all[id as usize];
                     sums[usize::from(id == small)].add_run(grid, row, columns, plane, own, &frame);
                 }
@@ -323,17 +335,26 @@ impl Joint {
         self.is_determined() && self.sums[0].cells >= FEW
     }
 
-    /// Whether it misses neither by more than `most` variances of a pixel.
-    fn is_close(&self, most: f64) -> bool {
-        (0..2).all(|which| self.missed[which] <= most * self.sums[which].pixels)
+    /// Whether it misses neither by more.
+    fn is_close(&self, most: Allowance) -> bool {
+        (0..2).all(|which| {
+            let Sums { pixels, smooth, .. } = self.sums[which];
+            self.missed[which] <= most.of(1.0, pixels, smooth)
+        })
     }
 
     /// Whether the quadratic explains both regions, and better than their planes; if so, how many pixels of
     /// the neighbour were seen.
     fn is_smooth(&self) -> Option<f64> {
         let by_planes: f64 = self.sums.iter().map(|sums| sums.by_planes - sums.cells).sum();
-        let is_better = self.missed.iter().sum::<f64>() + GAIN <= by_planes;
-        (self.has_enough() && is_better && self.is_close(SMOOTH)).then_some(self.sums[0].pixels)
+        let is_better = self.is_better(by_planes);
+        (self.has_enough() && is_better && self.is_close(JOINT_MISS)).then_some(self.sums[0].pixels)
+    }
+
+    /// Whether the quadratic explains more than what leaves such squares.
+    fn is_better(&self, squares: f64) -> bool {
+        let smooth: f64 = self.sums.iter().map(|sums| sums.smooth).sum();
+        self.missed.iter().sum::<f64>() + JOINT_GAIN.of(1.0, 1.0, smooth) <= squares
     }
 
     /// Whether a small region and what is around it bend smoothly.
@@ -341,13 +362,7 @@ impl Joint {
         let both = self.sums[0].merge(&self.sums[1]);
         let missed: f64 = self.missed.iter().sum();
         let by_plane = both.left_by(&both.solve::<3>()) - both.cells;
-        let is_better = missed + GAIN <= by_plane;
-        let is_bent = self.is_close(SMOOTH) || (self.is_close(LOOSE) && missed <= CREASE * by_plane);
-        self.has_enough() && is_better && is_bent
-    }
-
-    /// Whether a small region lies on the quadratic of curved neighbours.
-    fn continues(&self) -> bool {
-        self.is_determined() && self.is_close(LOOSE)
+        let is_bent = self.is_close(JOINT_MISS) || (self.is_close(LOOSE_MISS) && missed <= CREASE * by_plane);
+        self.has_enough() && self.is_better(by_plane) && is_bent
     }
 }

@@ -57,7 +57,7 @@ impl Seen {
         let is_on_curved = self.against.first().is_some_and(|against| against.is_curved && against.off <= self.most);
         if label > 0 {
             let chosen = self.against.iter().find(|against| against.id + 1 == u32::from(self.assigned));
-            let off = self.stray.map(|stray| stray.off).or(chosen.map(|against| against.off));
+            let off = chosen.map(|against| against.off);
             return Verdict::Plane { label, pixels: out.planes[usize::from(label) - 1].pixel_count, off };
         }
         if self.q.is_nan() {

@@ -4,6 +4,7 @@
 //! residuals about any other plane without a look at a pixel.
 
 use super::field::Field;
+use super::thresholds::JOIN;
 use crate::fit::Moments;
 use crate::parallel::Rows;
 use std::ops::Range;
@@ -53,6 +54,8 @@ pub(super) struct Grid {
     pub(super) sums: Sums<Vec<f32>>,
     /// Variance of a pixel's q that the noise model expects here.
     pub(super) variance: Vec<f32>,
+    /// Variance of the smooth part of its error, which all of the cell's pixels share.
+    pub(super) smooth: Vec<f32>,
     /// Mean squared residual in units of what noise may leave ([`limit`]): the largest of the cell's own, its
     /// parts' own, and its parts' about its plane. Flat cells have 1 and less.
     pub(super) roughness: Vec<f32>,
@@ -74,6 +77,7 @@ pub(super) struct Cell {
     abc: [f64; 3],
     pub(super) squares: f64,
     pub(super) variance: f64,
+    pub(super) smooth: f64,
 }
 
 impl Cell {
@@ -106,13 +110,13 @@ impl Cell {
     /// Largest sum of its squared residuals about a plane that its pixels lie on.
     #[inline(always)]
     pub(super) fn most_squares(&self, confidence: f64) -> f64 {
-        f64::from(limit(self.n as f32, confidence as f32)) * self.variance
+        f64::from(limit(self.n as f32, confidence as f32)) * self.variance + JOIN.smooth * self.n * self.smooth
     }
 
     /// Largest sum of its squared residuals about the plane of a region that a flat cell joins.
     #[inline(always)]
     pub(super) fn most_drifted(&self) -> f64 {
-        self.squares + f64::from(drift(self.n as f32)) * self.variance
+        self.squares + JOIN.of(self.n, self.variance, self.smooth)
     }
 
     /// (u, v, q) of its own plane in its middle.
@@ -125,13 +129,22 @@ impl Grid {
     pub(super) fn new(side: usize) -> Self {
         let none = || Vec::new();
         let sums = Sums::of(std::array::from_fn(|_| none()));
-        Grid { side, columns: 0, rows: 0, sums, variance: none(), roughness: none(), region: Vec::new() }
+        Grid {
+            side,
+            columns: 0,
+            rows: 0,
+            sums,
+            variance: none(),
+            smooth: none(),
+            roughness: none(),
+            region: Vec::new(),
+        }
     }
 
     pub(super) fn prepare(&mut self, field: &Field) {
         (self.columns, self.rows) = (field.stride / self.side, field.rows / self.side);
         let cells = self.columns * self.rows;
-        for numbers in self.sums.each().into_iter().chain([&mut self.variance, &mut self.roughness]) {
+        for numbers in self.sums.each().into_iter().chain([&mut self.variance, &mut self.smooth, &mut self.roughness]) {
             numbers.resize(cells, 0.0);
         }
         self.region.clear();
@@ -140,9 +153,9 @@ impl Grid {
 
     /// All rows, to be written.
     pub(super) fn whole(&mut self) -> GridRows<'_> {
-        let Grid { columns, rows, sums, variance, roughness, .. } = self;
+        let Grid { columns, rows, sums, variance, smooth, roughness, .. } = self;
         let sums = Sums::of(sums.each().map(|numbers| &mut numbers[..]));
-        GridRows { columns: *columns, rows: *rows, sums, variance, roughness }
+        GridRows { columns: *columns, rows: *rows, sums, variance, smooth, roughness }
     }
 
     /// How many cells there are.
@@ -209,6 +222,7 @@ impl Grid {
             abc: [number(a), number(b), number(c)],
             squares: number(squares),
             variance: number(&self.variance),
+            smooth: number(&self.smooth),
         }
     }
 
@@ -291,16 +305,6 @@ pub(super) fn limit(n: f32, confidence: f32) -> f32 {
     1.4 * (n + confidence * (2.0 * n).sqrt())
 }
 
-/// Mean square that a sensor's own distortion may add, in variances of a pixel.
-const DRIFT: f32 = 0.1;
-
-/// Largest sum of squares that another plane may add to the own ones of a cell of n pixels, in variances: three
-/// parameters add 3 in the mean, 10 once in fifty times, and distortion adds its share of every pixel.
-#[inline(always)]
-pub(super) fn drift(n: f32) -> f32 {
-    10.0 + DRIFT * n
-}
-
 /// What is known of the cells of some rows, to be written.
 #[derive(Debug)]
 pub(super) struct GridRows<'a> {
@@ -308,6 +312,7 @@ pub(super) struct GridRows<'a> {
     pub(super) rows: usize,
     pub(super) sums: Sums<&'a mut [f32]>,
     pub(super) variance: &'a mut [f32],
+    pub(super) smooth: &'a mut [f32],
     pub(super) roughness: &'a mut [f32],
 }
 
@@ -326,6 +331,7 @@ impl<'a> Rows for GridRows<'a> {
             rows,
             sums: Sums::of(self.sums.each().map(take)),
             variance: take(&mut self.variance),
+            smooth: take(&mut self.smooth),
             roughness: take(&mut self.roughness),
         };
         self.rows -= rows;

@@ -42,6 +42,8 @@ pub(super) struct Region {
     pub(super) squares: f64,
     /// Sum of the pixels' variances.
     pub(super) variance: f64,
+    /// Sum of the variances of the smooth part.
+    pub(super) smooth: f64,
     /// Whether it is a facet of a curved surface.
     pub(super) is_curved: bool,
     /// Pixels at which its plane was fitted.
@@ -57,6 +59,7 @@ impl Region {
             middle: [0.0; 2],
             squares: 0.0,
             variance: cell.variance * cell.n,
+            smooth: cell.smooth * cell.n,
             is_curved: false,
             fitted_at: 0.0,
         };
@@ -86,12 +89,14 @@ impl Region {
     pub(super) fn take(&mut self, cell: &Cell) {
         self.sums.merge(&cell.moments(self.origin));
         self.variance += cell.variance * cell.n;
+        self.smooth += cell.smooth * cell.n;
     }
 
     /// Gives a cell's pixels away; the plane stays as it is.
     pub(super) fn give(&mut self, cell: &Cell) {
         self.sums.remove(&cell.moments(self.origin));
         self.variance -= cell.variance * cell.n;
+        self.smooth -= cell.smooth * cell.n;
     }
 
     /// Takes a cell in if its pixels lie on the plane.
@@ -109,6 +114,7 @@ impl Region {
         }
         self.sums = both;
         self.variance += cell.variance * cell.n;
+        self.smooth += cell.smooth * cell.n;
         if is_small || self.sums.n >= REFIT * self.fitted_at {
             self.refit();
         }

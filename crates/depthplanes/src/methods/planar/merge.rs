@@ -5,9 +5,11 @@
 
 use super::grid::{Grid, NONE};
 use super::grow::{Region, Regions};
+use super::thresholds::{BOWED_ANGLE, BOWED_MERGE, BOWED_STEP, MERGE, STEP_NOISE};
 use crate::error::{Error, Result};
 use crate::fit::Moments;
 use crate::group::{reserve_to, vectorised};
+use crate::methods::rays::{Rays, dot};
 use crate::parallel::{in_parts, in_rows};
 use crate::select::MAX_PLANES;
 use std::ops::Range;
@@ -70,7 +72,7 @@ struct Part {
 impl Merger {
     /// Joins neighbouring regions that one plane explains as well as two, the most alike first. Those that
     /// became part of another are still listed. On as many threads.
-    pub(super) fn merge(&mut self, grid: &Grid, regions: &mut Regions, threads: usize) {
+    pub(super) fn merge(&mut self, grid: &Grid, regions: &mut Regions, rays: &Rays, threads: usize) {
         reserve_to(&mut self.pairs, 4 * grid.len());
         for memory in [&mut self.into, &mut self.order] {
             reserve_to(memory, 4 * grid.len());
@@ -78,7 +80,7 @@ impl Merger {
         reserve_to(&mut self.has_changed, grid.len());
         self.into.extend(0..regions.all.len() as u32);
         self.list_pairs(grid, threads);
-        while self.merge_best(&mut regions.all, threads) {}
+        while self.merge_best(&mut regions.all, rays, threads) {}
     }
 
     /// Leaves out regions of fewer than `least` pixels, and those that became part of another.
@@ -125,17 +127,19 @@ impl Merger {
     }
 
     /// Merges the pairs that cost least, each region once; whether there were any.
-    fn merge_best(&mut self, all: &mut [Region], threads: usize) -> bool {
+    fn merge_best(&mut self, all: &mut [Region], rays: &Rays, threads: usize) -> bool {
         let Merger { pairs, into, has_changed, order, .. } = self;
         let bend_all = |pairs: &mut [Pair]| {
             for pair in pairs.iter_mut().filter(|pair| pair.cost.is_nan()) {
                 let [a, b] = pair.ids.map(|id| &all[id as usize]);
-                pair.cost = bend(a, b);
+                let cost = bend(a, b);
+                let is_one = cost <= 1.0 || (cost <= BOWED_MERGE && goes_on(a, b, pair.middle(), rays));
+                pair.cost = if is_one { cost } else { f64::INFINITY };
             }
         };
         in_parts(threads, &mut pairs[..], bend_all, |(), ()| ());
         order.clear();
-        order.extend((0..pairs.len() as u32).filter(|&at| pairs[at as usize].cost <= BEND));
+        order.extend((0..pairs.len() as u32).filter(|&at| pairs[at as usize].cost.is_finite()));
         if order.is_empty() {
             return false;
         }
@@ -271,6 +275,7 @@ impl Region {
     pub(super) fn absorb(&mut self, other: &Region) {
         self.sums.merge(&self.sums_of(other));
         self.variance += other.variance;
+        self.smooth += other.smooth;
         self.refit();
     }
 
@@ -281,16 +286,28 @@ impl Region {
     }
 }
 
-/// Two regions are one plane if their joint plane adds no more than this to the mean squared residual of
-/// either, in variances.
-pub(super) const BEND: f64 = 0.5;
+/// Whether two planes meet without a step and turn by little.
+fn goes_on(a: &Region, b: &Region, [u, v]: [f64; 2], rays: &Rays) -> bool {
+    let limit = |region: &Region| STEP_NOISE.of(1.0, region.variance, region.smooth) / region.sums.n;
+    let step = a.at(u, v) - b.at(u, v);
+    if step * step > BOWED_STEP * BOWED_STEP * limit(a).max(limit(b)) {
+        return false;
+    }
+    let [m, n] = [a, b].map(|region| rays.inverse([region.abc[0], region.abc[1]], |u, v| region.at(u, v)));
+    let (both, squares) = (dot(m, n), dot(m, m) * dot(n, n));
+    let cosine = BOWED_ANGLE.to_radians().cos();
+    both > 0.0 && both * both >= cosine * cosine * squares
+}
 
-/// What a joint plane adds to the mean squared residual of the region that it suits less, in variances.
+/// What a joint plane adds to the squares of the region that it suits less, as a multiple of what may be ([`MERGE`]).
 pub(super) fn bend(a: &Region, b: &Region) -> f64 {
     let theirs = a.sums_of(b);
     let mut both = a.sums;
     both.merge(&theirs);
     let Some(joint) = both.fit() else { return f64::INFINITY };
-    let added = |sums: &Moments, own: f64, variance: f64| (sums.squares_about(joint.abc) - own) / variance;
-    added(&a.sums, a.squares, a.variance).max(added(&theirs, b.squares, b.variance))
+    let added = |sums: &Moments, region: &Region| {
+        // Its sums of variances are over its pixels.
+        (sums.squares_about(joint.abc) - region.squares) / MERGE.of(1.0, region.variance, region.smooth)
+    };
+    added(&a.sums, a).max(added(&theirs, b))
 }

@@ -23,14 +23,13 @@ mod planes;
 mod pyramid;
 mod quadratic;
 mod reach;
-mod relief;
 mod rule;
 mod seams;
 mod seen;
 mod settle;
-mod strays;
 #[cfg(test)]
 mod tests;
+mod thresholds;
 mod tiles;
 mod turns;
 
@@ -43,6 +42,7 @@ use crate::error::{Error, Result};
 use crate::explanation::Explanation;
 use crate::group::Grouper;
 use crate::map::{AnyView, DepthView, Pixel};
+use crate::noise::scales::{Errors, RAY, Scales};
 use crate::noise::{NoiseModel, Space};
 use crate::parallel::side_by_side;
 use crate::with_view;
@@ -52,15 +52,12 @@ use curved::{Facets, Optics};
 use explained::Explainer;
 use field::Field;
 use grow::{Region, Regions};
-use level::Level;
 use merge::Merger;
 use pieces::Pieces;
 use planes::Planes;
-use pyramid::{LEVELS, Pyramid};
+use pyramid::Pyramid;
 use reach::Reach;
-use relief::Relief;
 use seams::Seams;
-use strays::Strays;
 
 pub(super) static INFO: MethodInfo = MethodInfo {
     name: "planar",
@@ -100,7 +97,7 @@ const PARAMS: &[Param] = &[
     },
     Param {
         name: "confidence",
-        default: 3.0,
+        default: 4.0,
         min: 0.5,
         max: 100.0,
         kind: ParamKind::Real,
@@ -175,12 +172,11 @@ struct Runner {
     params: Planar,
     field: Field,
     pyramid: Pyramid,
-    level: Level,
+    scales: Scales,
     regions: Regions,
     merger: Merger,
     facets: Facets,
     explainer: Explainer,
-    relief: Relief,
     image: Vec<u16>,
     seams: Seams,
     reach: Reach,
@@ -188,7 +184,6 @@ struct Runner {
     bent: Bent,
     finisher: Finisher,
     pieces: Pieces,
-    strays: Strays,
 }
 
 impl Method for Runner {
@@ -234,9 +229,9 @@ impl Runner {
         }
         let noise = self.sum_tiles(&map, job);
         job.done("tiles");
-        self.grow(&noise, job.threads, watch)?;
-        job.done("grow");
         let rays = &Rays::of(&job.sensor, map.width(), map.height());
+        self.grow(&noise, rays, job.threads, watch)?;
+        job.done("grow");
         self.judge(Optics { noise: &noise, rays }, job.threads, watch);
         job.done("judge");
         self.assign(&noise, false, job.threads);
@@ -245,7 +240,7 @@ impl Runner {
         let Runner { regions, image, reach, contacts, .. } = self;
         contacts.join(reach.touching(), &mut regions.all, image, job.threads);
         job.done("assign");
-        let Runner { params, field, regions, image, finisher, pieces, strays, .. } = self;
+        let Runner { params, field, image, finisher, pieces, .. } = self;
         let ids = planes::of_image(image, field)?;
         let wanted = Wanted {
             min: params.min,
@@ -253,12 +248,8 @@ impl Runner {
             noise: Some(&noise),
             valid_pixels: field.valid_pixels,
         };
-        let planes = params.planes(&regions.all, &noise, false);
         let threads = job.threads;
-        let join = |grouper: &mut Grouper| {
-            pieces.join(field, image, grouper, threads);
-            strays.join(field, image, &planes, params.min, grouper, threads);
-        };
+        let join = |grouper: &mut Grouper| pieces.join(field, image, grouper, threads);
         finisher.finish_united(&map, &ids, &wanted, join, job, out)?;
         out.curved = match job.curved {
             true => Some(self.find_bent(&map, job, &noise, out.curved.take())?),
@@ -272,34 +263,36 @@ impl Runner {
 
     /// The map in the space where planes are affine, its tiles, and the noise to expect.
     fn sum_tiles<T: Pixel>(&mut self, map: &DepthView<'_, T>, job: &Job<'_>) -> NoiseModel {
-        let Runner { params, field, pyramid, level, .. } = self;
+        let Runner { params, field, pyramid, scales, .. } = self;
         let sensor = &job.sensor;
         let space = Space::of(sensor.measure);
         field.prepare(map);
         pyramid.sum(map, space, job.threads, field);
         let model = |noise| NoiseModel::new(sensor.measure, noise, field.step);
         let stated = stated(space, params.noise, params.noise_growth).or(sensor.noise).and_then(model);
-        let Level { blocks, slants } = level;
-        let estimated = || Some(model(level::noise(blocks, &pyramid.grids[LEVELS - 1], space))?.of_scatter());
-        let (noise, ray) = side_by_side(
-            job.threads,
-            || stated.or_else(estimated).expect("an estimate is of the map's own kind"),
-            || match params.ray {
-                0.0 => level::ray(slants, pyramid, stated.as_ref(), space, field.step),
-                ray => ray,
-            },
-        );
-        noise.with_ray(ray)
+        scales.look(pyramid);
+        let errors = scales.errors(space, field.step).unwrap_or(Errors {
+            constant: 0.0,
+            square: 0.0,
+            ray: 0.0,
+            white: 4.0,
+            smooth: 0.25,
+        });
+        let ray = if params.ray > 0.0 { params.ray } else { (errors.white * errors.ray).max(RAY[0]) };
+        let noise = stated.unwrap_or_else(|| {
+            model(errors.times(errors.white, space)).expect("an estimate is of the map's own kind").of_scatter()
+        });
+        noise.with_ray(ray).with_smooth(errors.times(errors.smooth, space), errors.smooth * errors.ray)
     }
 
     /// Regions of cells on one plane.
-    fn grow(&mut self, noise: &NoiseModel, threads: usize, watch: &mut Watch<'_>) -> Result<()> {
+    fn grow(&mut self, noise: &NoiseModel, rays: &Rays, threads: usize, watch: &mut Watch<'_>) -> Result<()> {
         let confidence = self.params.confidence;
         self.pyramid.expect(noise, confidence, threads);
         self.regions.grow(&mut self.pyramid, confidence, threads);
         self.regions.settle(&mut self.pyramid, threads);
         watch(Moment::Grown, self, noise);
-        self.merger.merge(&self.pyramid.grids[0], &mut self.regions, threads);
+        self.merger.merge(&self.pyramid.grids[0], &mut self.regions, rays, threads);
         watch(Moment::Merged, self, noise);
         self.merger.drop_small(&mut self.pyramid.grids[0], &mut self.regions, self.params.least(), threads)
     }
@@ -307,7 +300,7 @@ impl Runner {
     /// Which regions are no surface, and which of the others are curved.
     fn judge(&mut self, optics: Optics<'_>, threads: usize, watch: &mut Watch<'_>) {
         let noise = optics.noise;
-        let Runner { params, field, pyramid, regions, merger, facets, explainer, relief, .. } = self;
+        let Runner { params, field, pyramid, regions, merger, facets, explainer, .. } = self;
         pyramid.hand_up(threads);
         let planes = params.planes(&regions.all, noise, false);
         let (Facets { bows, boxes, .. }, tiles) = (&mut *facets, &pyramid.grids[0]);
@@ -319,15 +312,6 @@ impl Runner {
             },
             || bows.measure(pyramid, &regions.all),
         );
-        let confidence = params.confidence;
-        if relief.relieve(&mut pyramid.grids[0], regions, explainer, bows, boxes, confidence) {
-            pyramid.hand_up(threads);
-            side_by_side(
-                threads,
-                || bows.measure(pyramid, &regions.all),
-                || curved::find_boxes(&pyramid.grids[0], &regions.all, boxes),
-            );
-        }
         facets.mark(pyramid, regions, &merger.pairs, &explainer.is_explained, optics, threads);
         watch(Moment::Judged, self, noise);
         let Runner { pyramid, regions, merger, explainer, .. } = self;

@@ -47,7 +47,9 @@ impl Planes<'_> {
     #[inline(always)]
     pub(super) fn variance(&self, region: &Region, q: f64) -> f64 {
         let [a, b, _] = region.abc.map(|number| number as f32);
-        self.noise.variance(q) + f64::from(of_slope(self.noise.ray() as f32, a, b))
+        self.noise.variance(q)
+            + self.noise.smooth_sigma(q).powi(2)
+            + f64::from(of_slope((self.noise.ray() + self.noise.smooth_ray()) as f32, a, b))
     }
 
     /// Square of the largest distance from a region's plane at q.

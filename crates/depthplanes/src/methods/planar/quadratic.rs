@@ -21,6 +21,8 @@ pub(super) struct Sums {
     pub(super) cells: f64,
     /// Pixels.
     pub(super) pixels: f64,
+    /// Sum of the smooth part's variances, in variances of a pixel.
+    pub(super) smooth: f64,
     /// Sum of the weighed squared residuals about the cell's own region.
     pub(super) by_planes: f64,
 }
@@ -64,6 +66,7 @@ impl Sums {
         both.squares += other.squares;
         both.cells += other.cells;
         both.pixels += other.pixels;
+        both.smooth += other.smooth;
         both.by_planes += other.by_planes;
         both
     }
@@ -136,6 +139,14 @@ pub(super) struct Frame {
 }
 
 impl Frame {
+    /// What a quadratic in it changes by per column and per row at a place, and its value there.
+    pub(super) fn slopes(&self, coefficients: &[f64; 6], [u, v]: [f64; 2]) -> ([f64; 2], f64) {
+        let [x, y] = [(u - self.middle[0]) * self.scale, (v - self.middle[1]) * self.scale];
+        let &[c, a, b, aa, ab, bb] = coefficients;
+        let slopes = [self.scale * (a + 2.0 * aa * x + ab * y), self.scale * (b + ab * x + 2.0 * bb * y)];
+        (slopes, c + a * x + b * y + aa * x * x + ab * x * y + bb * y * y)
+    }
+
     pub(super) fn of(region: &Region) -> Self {
         Frame { middle: region.middle, scale: 1.0 / region.sums.n.sqrt() }
     }
@@ -168,6 +179,7 @@ impl Sums {
             right = [right[0] + weighed, right[1] + weighed * x, right[2] + weighed * xx];
             self.squares += weighed * residual * per_n;
             self.pixels += cell.n;
+            self.smooth += weight * cell.smooth;
             self.cells += 1.0;
             let by_own = cell.residual_about(own.abc, own.origin);
             self.by_planes += by_own * by_own * per_variance * per_n;

@@ -7,13 +7,11 @@ use super::curved::Sign;
 use super::grid::{Grid, NONE};
 use super::grow::{Region, fewest};
 use super::near::{self, Held};
-use super::pieces::Pieces;
-use super::planes::{self, BENT};
+use super::planes::BENT;
 use super::{Moment, Runner};
 use crate::camera::{Hessian, Measure, Sensor};
 use crate::detection::Detection;
 use crate::explanation::{Finding, Limit};
-use crate::group::{Grouper, LinkRule};
 use crate::methods::noise::stated;
 use crate::noise::{NoiseModel, Slants, Space};
 
@@ -45,16 +43,6 @@ pub(super) struct Against {
     pub(super) pixels: f64,
 }
 
-/// A piece that was cut off from its region and went to the one around it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Stray {
-    pub(super) pixels: usize,
-    /// The region that it went to.
-    pub(super) id: u32,
-    /// The pixel's distance from that one's plane, standard deviations.
-    pub(super) off: f64,
-}
-
 /// What was seen of one pixel.
 pub(super) struct Seen {
     pub(super) at: [usize; 2],
@@ -75,8 +63,6 @@ pub(super) struct Seen {
     /// Pixels of the connected piece it is in.
     pub(super) piece: usize,
     pub(super) is_large: bool,
-    /// The piece itself, if it was cut off.
-    pub(super) stray: Option<Stray>,
     pub(super) noise: Option<NoiseModel>,
 }
 
@@ -95,7 +81,6 @@ impl Seen {
             assigned: 0,
             piece: 0,
             is_large: false,
-            stray: None,
             noise: None,
         }
     }
@@ -254,11 +239,12 @@ impl Seen {
             }
             Some(Sign::Surroundings) => "curved: one quadratic runs through it and what is around it".to_string(),
             Some(Sign::Turns) => "curved: off its border the surface goes on and turns gently".to_string(),
-            Some(Sign::Continues) => "curved: it continues a curved neighbour".to_string(),
+            Some(Sign::Folds) => "curved: it turns gently into neighbours of its size".to_string(),
         };
         let finding = Finding::new("judge", "is it flat?", outcome).refusing(sign.is_some());
-        self.bow = run.facets.bows.rms(id).filter(|_| sign == Some(Sign::Bow)).map(|[bow, most]| bow / most);
-        let finding = match run.facets.bows.rms(id) {
+        let bow = run.facets.bows.rms(id, &run.regions.all[id as usize]);
+        self.bow = bow.filter(|_| sign == Some(Sign::Bow)).map(|[bow, most]| bow / most);
+        let finding = match bow {
             Some([bow, most]) => finding.with("bow", bow, DEVIATIONS).limit(Limit::AtMost(most)),
             None => finding,
         };
@@ -306,7 +292,6 @@ impl Seen {
         if self.against.is_empty() {
             self.findings.push(Finding::new("assign", "the pixel", "no region within a block of 8 x 8").refusing(true));
         }
-        self.stray = self.find_stray(run);
         for against in &self.against {
             let label = label_of(run, out, against.id);
             let name = match against.is_curved {
@@ -314,7 +299,6 @@ impl Seen {
                 false => named(label, against.pixels),
             };
             let outcome = match against.off <= self.most {
-                true if u32::from(self.assigned) == against.id + 1 && self.stray.is_some() => "taken at first",
                 true if u32::from(self.assigned) == against.id + 1 => "taken",
                 true if against.is_curved => "near, but gives no plane",
                 true => "near, but another goes before it",
@@ -324,57 +308,19 @@ impl Seen {
             self.findings.push(finding.with("off", against.off, DEVIATIONS).limit(Limit::AtMost(self.most)));
         }
         if self.assigned > 0 {
-            self.conclude_piece(run, out);
+            self.conclude_piece(run);
         }
     }
 
     /// What became of its connected piece.
-    fn conclude_piece(&mut self, run: &Runner, out: &Detection) {
+    fn conclude_piece(&mut self, run: &Runner) {
         let groups = run.finisher.grouper.groups();
         self.piece = groups.sizes()[groups.at(self.at) as usize] as usize;
         self.is_large = self.piece > run.params.min as usize;
-        if let Some(stray) = self.stray {
-            let to = named(out.labels[self.at[1] * out.width + self.at[0]], run.regions.all[stray.id as usize].sums.n);
-            let outcome = format!("cut off from the rest of its own plane, goes to {to} around it");
-            let finding = Finding::new("group", "its connected piece", outcome);
-            self.findings.push(finding.with("pixels", stray.pixels as f64, ""));
-            let finding = Finding::new("group", format!("the pixel against {to}"), "taken with its piece");
-            self.findings.push(finding.with("off", stray.off, DEVIATIONS));
-            return;
-        }
         let outcome = if self.is_large { "large enough" } else { "too small" };
         let limit = Limit::MoreThan(run.params.min.into());
         let finding = Finding::new("group", "its connected piece", outcome).with("pixels", self.piece as f64, "");
         self.findings.push(finding.limit(limit).refusing(!self.is_large));
-    }
-
-    /// Its piece, if stage "group" puts it with a larger piece of another region.
-    fn find_stray(&self, run: &Runner) -> Option<Stray> {
-        let Runner { params, field, image, regions, finisher, .. } = run;
-        if self.assigned == 0 {
-            return None;
-        }
-        // The pieces as they are before that.
-        let (ids, mut grouper) = (planes::of_image(image, field).ok()?, Grouper::default());
-        grouper.group(&ids, &LinkRule::new(ids.validity(), 0.0).ok()?, 1);
-        Pieces::default().join(field, image, &mut grouper, 1);
-        let (pieces, groups) = (grouper.groups(), finisher.grouper.groups());
-        let label_at = |[u, v]: [usize; 2]| image[v * field.stride + u];
-        let mut label = label_at(self.at);
-        pieces.each_run(|run| {
-            let place = [run.u_first as usize, run.v as usize];
-            if pieces.sizes()[run.group as usize] > params.min && groups.at(place) == groups.at(self.at) {
-                label = label_at(place);
-            }
-        });
-        if label == label_at(self.at) {
-            return None;
-        }
-        let (id, [u, v]) = (u32::from(label) - 1, self.at.map(|place| place as f64));
-        let planes = params.planes(&regions.all, self.noise.as_ref()?, false);
-        let on_plane = planes.region(id).at(u, v);
-        let off = (self.q - on_plane).abs() / planes.variance(planes.region(id), on_plane).sqrt();
-        Some(Stray { pixels: pieces.sizes()[pieces.at(self.at) as usize] as usize, id, off })
     }
 }
 

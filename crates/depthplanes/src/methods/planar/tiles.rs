@@ -3,7 +3,8 @@
 //! In: rows of the map in q, or of cells. Out: the sums and planes of the tiles, or of the cells of 2 x 2, in them. All cells
 //! of a row are computed side by side, so the loops are plain arithmetic that the compiler turns into vectors.
 
-use super::grid::{GridRows, Sums, drift, limit};
+use super::grid::{GridRows, Sums, limit};
+use super::thresholds::FLAT;
 
 /// Columns and rows of a tile. The smallest plane has to hold a few; a tile's own plane should still
 /// mean something under noise. Of 4, 5, 6 and 8, 4 was the best on ABW and on made-up rooms.
@@ -227,11 +228,11 @@ fn cells(parts: &Sums<&mut [f32]>, rows: [usize; 2], half: f32) -> Sums<Lanes> {
                 let (du, dv) = (half * (2 * column) as f32 - half, half * (2 * row) as f32 - half);
                 let (da, db) = (pa[row][i] - a, pb[row][i] - b);
                 let dc = pc[row][i] - mean - (a * du + b * dv + c);
-                let added = da * (da * puu[row][i] + 2.0 * (db * puv[row][i] + dc * pu[row][i]))
+                let more = da * (da * puu[row][i] + 2.0 * (db * puv[row][i] + dc * pu[row][i]))
                     + db * (db * pvv[row][i] + 2.0 * dc * pv[row][i])
                     + dc * dc * pn[row][i];
-                squares += own(psquares[row][i]) + added;
-                strain = larger(strain, added / drift(pn[row][i]));
+                squares += own(psquares[row][i]) + more;
+                strain = larger(strain, more);
             }
         }
         out.put(t, [n, u, v, uu, uv, vv, a, b, mean + c, squares, strain], fit.is_determined);
@@ -275,12 +276,14 @@ impl GridRows<'_> {
     /// Roughness from each cell's own residuals, and from those of its parts.
     #[inline(always)]
     pub(super) fn hold_against_noise(&mut self, parts: Option<&GridRows<'_>>, confidence: f32) {
-        let GridRows { sums: Sums { n, squares, strain, .. }, variance, roughness, columns, .. } = self;
-        let numbers = n.iter().zip(&**squares).zip(&**strain).zip(&**variance);
-        for ((((&n, &squares), &strain), &variance), roughness) in numbers.zip(&mut **roughness) {
+        let GridRows { sums: Sums { n, squares, strain, .. }, variance, smooth, roughness, columns, .. } = self;
+        let numbers = n.iter().zip(&**squares).zip(&**strain).zip(&**variance).zip(&**smooth);
+        for (((((&n, &squares), &strain), &variance), &smooth), roughness) in numbers.zip(&mut **roughness) {
             let free = larger(n - 3.0, 1.0);
-            let own = squares * n / (free * limit(n, confidence));
-            *roughness = larger(own, strain) / variance;
+            let bend = if parts.is_some() { FLAT.smooth as f32 * n * smooth } else { 0.0 };
+            let own = squares * n / (free * (limit(n, confidence) * variance + bend));
+            let most = FLAT.variances as f32 * variance + FLAT.smooth as f32 * n / 4.0 * smooth;
+            *roughness = larger(own, strain / most);
         }
         if let Some(parts) = parts {
             for (row, roughness) in roughness.chunks_exact_mut(*columns).enumerate() {

@@ -10,8 +10,7 @@ use super::grid::{Grid, NONE};
 use super::grow::Region;
 use crate::methods::rays::{Rays, Vec3, dot, sub};
 
-/// Sine of the largest angle, 23.5 degrees, at which a surface turns gently. Spheres are modelled with 16 segments and more,
-/// which turn by 22.5 degrees, and noise makes a degree of difference; people build with sharper edges.
+/// Sine of the largest angle at which a surface turns gently, [`super::thresholds::GENTLE`].
 const ANGLE: f64 = 0.399;
 /// Standard deviations of a pixel by which a tile lies off the plane where the surface does turn: what rounding does, its
 /// pixels may share.

@@ -1,0 +1,69 @@
+//! What the stages hold their statistics against, in one place.
+//!
+//! Noise is in two parts everywhere: a pixel's own (`variance`: white error and rounding), which averages out, and the
+//! smooth part (`smooth`), which all pixels of a surface's patch share. A sum of squares over n pixels may so be
+//! `chi * variance + deviations^2 * n * smooth`; all that follows are these two factors for one question each, and
+//! angles. Unless said, a value is the middle of a range over which the recorded frames and the made-up rooms of the
+//! evaluation (`eval real scene:random:seed=1-20`) give the same within a surface or two.
+
+/// What squares may be: so many variances in all, and for each pixel so many of the smooth part.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Allowance {
+    pub(super) variances: f64,
+    pub(super) smooth: f64,
+}
+
+impl Allowance {
+    /// Of n pixels of these variances.
+    #[inline(always)]
+    pub(super) fn of(self, n: f64, variance: f64, smooth: f64) -> f64 {
+        self.variances * variance + self.smooth * n * smooth
+    }
+}
+
+/// What the plane of a region may add to the squares of a cell that joins it. A plane's three parameters add 3 in the
+/// mean; cameras' white noise differs by a factor of 2 to 4 from place to place. Smooth: 3.5 deviations.
+pub(super) const JOIN: Allowance = Allowance { variances: 30.0, smooth: 12.0 };
+/// What the plane of a flat cell may add to the squares of each of its parts. Tighter than [`JOIN`], since what grows from
+/// it is known by it alone: of the recorded frames' surfaces 5 of 100 are lost at 4 deviations squared.
+pub(super) const FLAT: Allowance = Allowance { variances: 10.0, smooth: 1.5 };
+/// What the joint plane of two regions that are one may add to either, for each pixel: half a variance, and 2.5 deviations
+/// of the smooth part.
+pub(super) const MERGE: Allowance = Allowance { variances: 0.5, smooth: 6.0 };
+
+/// Two regions whose joint plane adds up to so many times what [`MERGE`] allows are one if they also meet without a step and
+/// at a small angle: the bow of a wall over metres is a camera's, and no statistic of a small patch sees it.
+pub(super) const BOWED_MERGE: f64 = 16.0;
+/// Largest angle at which they meet, degrees. Pieces of one recorded wall differ by less than 2, of a table or floor at a
+/// grazing angle by up to 8; two surfaces by more than 10.
+pub(super) const BOWED_ANGLE: f64 = 8.0;
+/// Largest step between their planes in the middle of their border, in deviations of what [`STEP_NOISE`] says.
+pub(super) const BOWED_STEP: f64 = 4.0;
+/// Variances of a pixel and of the smooth part that a step is held against.
+pub(super) const STEP_NOISE: Allowance = Allowance { variances: 3.25, smooth: 2.25 };
+
+/// Smallest bow of a curved region, root mean square, in deviations of the smooth part.
+pub(super) const BOW: f64 = 1.7;
+/// Variances that a quadratic has to explain beyond a region's plane: its three terms explain 3 of white noise, and
+/// more than 20 once in ten thousand regions.
+pub(super) const BOW_VARIANCES: f64 = 20.0;
+/// Smallest turn of a curved region, degrees: a wall that bows 5 mm over 2 m turns by 1, a ball's facet by more than 10.
+pub(super) const TURN: f64 = 8.0;
+/// Deviations of the smooth part by which a bow, and the turn with it, is shortened first: those of small regions turn by
+/// 20 to 120 degrees by their error alone.
+pub(super) const TURN_ERROR: f64 = 1.3;
+
+/// By what a quadratic may miss two facets of one smooth surface, and by what it has to explain them better than their two
+/// planes do.
+pub(super) const JOINT_MISS: Allowance = Allowance { variances: 0.12, smooth: 2.0 };
+pub(super) const JOINT_GAIN: Allowance = Allowance { variances: 9.0, smooth: 0.3 };
+/// The first for a small region and what is around it, as long as the quadratic leaves little ([`super::curved`]).
+pub(super) const LOOSE_MISS: Allowance = Allowance { variances: 0.4, smooth: 2.0 };
+
+/// Largest angle, degrees, at which a curved surface turns between two facets: spheres are modelled with 16 segments and
+/// more, which turn by 22.5 degrees.
+pub(super) const GENTLE: f64 = 23.5;
+/// Share of a facet's border beyond which it turns so: one on the rim has a step on its other side.
+pub(super) const GENTLE_SHARE: f64 = 0.4;
+/// A neighbour counts for that from so much of the facet's pixels on.
+pub(super) const GENTLE_SIZE: f64 = 0.25;

@@ -1,0 +1,222 @@
+//! How far off a map's pixels are, and how far means over larger and larger cells of them, from the map itself.
+//!
+//! In: the means of neighbouring cells of [`SIDES`] pixels. Out: the parts of a pixel's error ([`Errors`]). The second
+//! difference of three neighbours' means is 0 on every plane, so its scatter is error. White error falls with a cell's
+//! side, smooth error does not; nor does what a scene's edges make, which the median passes over as long as they are less
+//! than half of what is looked at.
+
+use super::{SensorNoise, Space};
+use crate::group::reserve_to;
+
+/// Sides of the cells, pixels.
+pub(crate) const SIDES: [usize; 3] = [4, 8, 16];
+/// Cells that are looked at for each side, at most about: a median of 4,000 is known to 2 %.
+pub(crate) const SAMPLE: usize = 4096;
+/// Fewest second differences that tell a scale.
+const FEW: usize = 16;
+/// Stretches of q that tell how the error grows over the range; of equal counts.
+const STRETCHES: usize = 6;
+/// Ratios of constant error to error that grows with q^2 that are tried.
+const SHAPES: usize = 17;
+/// Median of the square of a standard normal number, and of chi-squared of the 13 degrees of freedom of a tile.
+const MEDIAN_OF_SQUARE: f64 = 0.454_936;
+const MEDIAN_OF_TILE: f64 = 12.34;
+/// Largest ratio of the scatters of means over cells and over cells of half the side: correlated error does not grow with
+/// the side, what grows faster is the scene.
+const GROWTH: f64 = 2.0;
+/// A slope makes error if steep tiles scatter more than flat ones by this factor, in variance.
+const STEEP: f64 = 1.25;
+/// The ray of a pixel is known to within so many pixels, at best and at worst: no camera is calibrated to better, and what
+/// is off by more is the next pixel's.
+pub(crate) const RAY: [f64; 2] = [0.05, 0.5];
+
+/// A second difference of means.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Bend {
+    /// q in the middle.
+    pub(crate) q: f32,
+    /// Squared slope there, a^2 + b^2.
+    pub(crate) slope: f32,
+    /// The square of `(m[-1] - 2 m[0] + m[1]) / sqrt 6`: in the mean the variance of a cell's mean.
+    pub(crate) square: f32,
+}
+
+/// Squared residuals of a tile's pixels about its own plane, over its degrees of freedom.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Scatter {
+    pub(crate) q: f32,
+    pub(crate) slope: f32,
+    pub(crate) square: f32,
+}
+
+/// What is seen of a map or of several; reuses its memory.
+#[derive(Debug, Default)]
+pub(crate) struct Scales {
+    /// For each of [`SIDES`].
+    pub(crate) bends: [Vec<Bend>; 3],
+    pub(crate) tiles: Vec<Scatter>,
+    numbers: Vec<f32>,
+}
+
+/// The parts of a pixel's error: standard deviations of q are multiples of one that is `constant + square q^2` where the
+/// surface faces the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Errors {
+    /// Of means over tiles of 4 x 4 pixels.
+    pub(crate) constant: f64,
+    pub(crate) square: f64,
+    /// Pixels: with a slope g the variance of these means is larger by `ray^2 g^2`.
+    pub(crate) ray: f64,
+    /// Standard deviation of single pixels about a tile's plane, and of means over 16 x 16, as multiples.
+    pub(crate) white: f64,
+    pub(crate) smooth: f64,
+}
+
+impl Scales {
+    /// Forgets everything and makes room for a map.
+    pub(crate) fn prepare(&mut self) {
+        for bends in &mut self.bends {
+            bends.clear();
+            reserve_to(bends, 4 * SAMPLE);
+        }
+        self.tiles.clear();
+        reserve_to(&mut self.tiles, 2 * SAMPLE);
+        reserve_to(&mut self.numbers, 4 * SAMPLE);
+    }
+
+    /// The errors that explain what was seen; none if too little was.
+    pub(crate) fn errors(&mut self, space: Space, step: f64) -> Option<Errors> {
+        let Scales { bends: [fine, middle, coarse], tiles, numbers } = self;
+        if fine.len() < FEW {
+            return None;
+        }
+        let [constant, square] = shape(fine, numbers, space);
+        let facing = |q: f32| (constant + square * f64::from(q) * f64::from(q)).powi(2) + floor(q.into(), space, step);
+        // Of the slope: what the steeper half shows beyond the flatter one.
+        let half = fine.len() / 2;
+        fine.select_nth_unstable_by(half, |a, b| a.slope.total_cmp(&b.slope));
+        let (flat, steep) = fine.split_at(half);
+        let of = |bends: &[Bend], numbers: &mut Vec<f32>| {
+            median(numbers, bends.iter().map(|bend| (f64::from(bend.square) / facing(bend.q)) as f32))
+                / MEDIAN_OF_SQUARE
+        };
+        let (of_flat, of_steep) = (of(flat, numbers), of(steep, numbers));
+        let excess = of_steep - STEEP * of_flat;
+        let ray = if excess > 0.0 {
+            ray_of(steep, numbers, |bend| of_flat * facing(bend.q) + shared(bend, 4.0, space, step))
+        } else {
+            0.0
+        };
+        let level = if ray > 0.0 { of_flat.sqrt() } else { 1.0 };
+        let found = Errors { constant: constant * level, square: square * level, ray, white: 4.0, smooth: 0.25 };
+        let variance = |q: f32, slope: f32| found.variance(q.into(), slope.into()) + floor(q.into(), space, step);
+        let pixels = tiles.iter().map(|tile| (f64::from(tile.square) / variance(tile.q, tile.slope)) as f32);
+        let white = if tiles.len() < FEW { 4.0 } else { (median(numbers, pixels) * 13.0 / MEDIAN_OF_TILE).sqrt() };
+        let mut ratio = |bends: &[Bend], side: f64, least: f64, most: f64| {
+            if bends.len() < FEW {
+                return least;
+            }
+            let squares = bends.iter().map(|bend| {
+                let expected = variance(bend.q, bend.slope) + shared(bend, side, space, step);
+                (f64::from(bend.square) / expected) as f32
+            });
+            { (median(numbers, squares) / MEDIAN_OF_SQUARE).sqrt().clamp(least, most) }
+        };
+        let of_middle = ratio(middle, 8.0, 0.5, GROWTH);
+        let smooth = ratio(coarse, 16.0, 0.5 * of_middle.min(0.5), GROWTH * of_middle);
+        let of_tiles = (1.0 - white * white / 16.0).max(0.0).sqrt();
+        let smooth = (smooth * of_tiles).max(white / 16.0);
+        Some(Errors { white, smooth, ..found })
+    }
+}
+
+impl Errors {
+    /// Variance of the mean over a tile.
+    pub(crate) fn variance(&self, q: f64, slope: f64) -> f64 {
+        let sigma = self.constant + self.square * q * q;
+        sigma * sigma + self.ray * self.ray * slope
+    }
+
+    /// So many times the errors of tiles' means.
+    pub(crate) fn times(&self, factor: f64, space: Space) -> SensorNoise {
+        match space {
+            Space::InverseDepth { .. } => {
+                SensorNoise::Depth { base: factor * self.square, growth: factor * self.constant }
+            }
+            Space::Value => SensorNoise::Value { sigma: factor * self.constant },
+        }
+    }
+}
+
+/// Variance of the mean over a tile that rounding and single precision make at least.
+fn floor(q: f64, space: Space, step: f64) -> f64 {
+    let (rounding, single) = (step * space.unit(q), 2e-7 * q);
+    rounding * rounding / (12.0 * 16.0) + single * single
+}
+
+/// Variance that rounding makes of the mean over a cell of so many pixels a side, where a slope passes few steps in it.
+fn shared(bend: &Bend, side: f64, space: Space, step: f64) -> f64 {
+    let square = (step * space.unit(bend.q.into())).powi(2);
+    if square == 0.0 { 0.0 } else { square / 12.0 * square / (square + side * side * f64::from(bend.slope)) }
+}
+
+/// Constant and square of the error, by its scatter in stretches of q: the ratio of both that leaves the least in the
+/// logarithm of the variance.
+fn shape(bends: &mut [Bend], numbers: &mut Vec<f32>, space: Space) -> [f64; 2] {
+    let size = bends.len().div_ceil(STRETCHES);
+    let mut points = [(0.0, 0.0); STRETCHES];
+    let (mut rest, mut count) = (bends, 0);
+    for point in &mut points {
+        if rest.is_empty() {
+            break;
+        }
+        let take = size.min(rest.len());
+        if take < rest.len() {
+            rest.select_nth_unstable_by(take, |a, b| a.q.total_cmp(&b.q).then(a.square.total_cmp(&b.square)));
+        }
+        let (stretch, others) = rest.split_at_mut(take);
+        let q = median(numbers, stretch.iter().map(|bend| bend.q));
+        let variance = median(numbers, stretch.iter().map(|bend| bend.square)) / MEDIAN_OF_SQUARE;
+        *point = (q, variance);
+        rest = others;
+        count += 1;
+    }
+    let points = &points[..count];
+    let middle = points[count / 2].0;
+    let per_square = if middle == 0.0 { 0.0 } else { 1.0 / (middle * middle) };
+    let tried = if space == Space::Value { 1 } else { SHAPES };
+    let mut best = (f64::INFINITY, [0.0; 2]);
+    for step in 0..tried {
+        let share = step as f64 / (SHAPES - 1) as f64;
+        let level = |q: f64| 2.0 * ((1.0 - share) + share * q * q * per_square).ln();
+        let points = points.iter().map(|&(q, variance)| (q, variance.max(f64::MIN_POSITIVE).ln()));
+        let mean = points.clone().map(|(q, variance)| variance - level(q)).sum::<f64>() / count as f64;
+        let left: f64 = points.map(|(q, variance)| (variance - level(q) - mean).powi(2)).sum();
+        if left < best.0 {
+            let sigma = (mean / 2.0).exp();
+            best = (left, [sigma * (1.0 - share), sigma * share * per_square]);
+        }
+    }
+    best.1
+}
+
+/// The ray that explains the scatter of steep tiles beside the error of flat ones, pixels, by halving.
+fn ray_of(steep: &[Bend], numbers: &mut Vec<f32>, flat: impl Fn(&Bend) -> f64) -> f64 {
+    let every = steep.len().div_ceil(512);
+    let (mut low, mut high) = (0.0, RAY[1]);
+    for _ in 0..8 {
+        let ray: f64 = (low + high) / 2.0;
+        let ratio = |bend: &Bend| f64::from(bend.square) / (flat(bend) + ray * ray * f64::from(bend.slope));
+        let is_larger = median(numbers, steep.iter().step_by(every).map(|bend| ratio(bend) as f32)) < MEDIAN_OF_SQUARE;
+        (low, high) = if is_larger { (low, ray) } else { (ray, high) };
+    }
+    low
+}
+
+/// The median of numbers.
+fn median(memory: &mut Vec<f32>, numbers: impl Iterator<Item = f32>) -> f64 {
+    memory.clear();
+    memory.extend(numbers);
+    let middle = memory.len() / 2;
+    (*memory.select_nth_unstable_by(middle, f32::total_cmp).1).into()
+}
