@@ -8,6 +8,7 @@
 mod support;
 
 use depthplanes::methods::METHODS;
+use depthplanes::scene::{SCENES, SENSORS};
 use depthplanes_io::encoding::ENCODINGS;
 use depthplanes_io::formats::FORMATS;
 use depthplanes_io::outputs::OUTPUTS;
@@ -139,10 +140,27 @@ fn the_tables_of_the_readme_are_the_libraries_tables() {
     let filled = fill(&filled, "outputs", "| flag | file | about |", outputs);
     let [heading, rows] = results();
     let filled = fill(&filled, "methods", &heading[0], rows.into_iter());
+    written_or_equal(&path, &text, &filled);
+}
+
+#[test]
+fn the_tables_of_made_up_scenes_are_the_librarys_tables() {
+    let _alone = DOCUMENTS.lock();
+    let path = root().join("docs/cli.md");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let row = |name: &str, about: &str| format!("| `{name}` | {about} |");
+    let filled =
+        fill(&text, "scenes", "| scene | what is there |", SCENES.iter().map(|scene| row(scene.name, scene.about)));
+    let sensors = SENSORS.iter().map(|sensor| row(sensor.name, sensor.about));
+    let filled = fill(&filled, "sensors", "| sensor | what it delivers |", sensors);
+    written_or_equal(&path, &text, &filled);
+}
+
+fn written_or_equal(path: &Path, text: &str, filled: &str) {
     if update() {
-        std::fs::write(path, &filled).unwrap();
+        std::fs::write(path, filled).unwrap();
     } else {
-        assert!(text == filled, "a table of README.md is not that of the library; run `make golden`");
+        assert!(text == filled, "a table of {} is not that of the library; run `make golden`", path.display());
     }
 }
 

@@ -42,7 +42,7 @@ mod truth;
 pub use crate::random::Random;
 pub use catalogue::{SCENES, SceneInfo, Staged, find};
 pub use pose::{Camera, Pose};
-pub use sensors::{SENSORS, SensorInfo, SensorModel};
+pub use sensors::{SENSORS, SensorError, SensorInfo, SensorModel};
 pub use spec::{MAX_FRAME_PIXELS, Spec};
 pub use surfaces::{Place, Scene, Strip, Surface};
 pub use truth::{Truth, TruthPlane};

@@ -26,7 +26,7 @@ const KEYS: &str = "seed, sensor, size";
 /// let spec: Spec = "stairs:sensor=tof_white".parse()?;
 /// assert_eq!(spec.to_string(), "stairs:seed=1,sensor=tof_white,size=640x480");
 /// let error = "stairs:sensor=sonar".parse::<Spec>().unwrap_err();
-/// assert_eq!(error.to_string(), "there is no sensor `sonar`; there are: clean, clean_mm, kinect_white, tof_white, disparity");
+/// assert_eq!(error.to_string(), "there is no sensor `sonar`; there are: clean, clean_mm, kinect, kinect2, azure, realsense, stereo, kinect_white, tof_white, disparity");
 /// # Ok::<(), depthplanes::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
