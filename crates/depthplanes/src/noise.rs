@@ -7,12 +7,14 @@
 
 mod estimate;
 mod ray;
+mod rounding;
 mod steps;
 mod table;
 
 pub(crate) use estimate::{Blocks, VALID};
 pub use estimate::{Estimate, Estimator};
 pub(crate) use ray::{Slants, Tiled};
+pub use rounding::{Rounding, RoundingFinder};
 pub(crate) use steps::Steps;
 pub use table::{MAX_ROWS, NoiseTable};
 

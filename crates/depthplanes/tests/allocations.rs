@@ -5,6 +5,7 @@
 mod naive;
 
 use depthplanes::methods::Method;
+use depthplanes::noise::{RoundingFinder, Space};
 use depthplanes::outline::Outliner;
 use depthplanes::{Coplanar, DepthView, Detector, Error, Intrinsics, Measure, Ngaf, Pixel, Planar, Sensor};
 use naive::Random;
@@ -203,5 +204,16 @@ fn smaller_frames_allocate_nothing_either() {
         let view = DepthView::new(&frame, width, height).unwrap();
         let (calls, bytes) = allocated(|| assert!(detector.detect(view).is_ok()));
         assert!(number == 0 || (calls, bytes) == (0, 0), "{width}x{height}: {calls} calls, {bytes} bytes");
+    }
+}
+
+#[test]
+fn what_later_maps_are_rounded_to_is_found_without_allocating() {
+    let (mut random, mut finder) = (Random(6), RoundingFinder::default());
+    for number in 0..25 {
+        let frame: Vec<f32> = frame(&mut random, number, 160, 120);
+        let view = DepthView::new(&frame, 160, 120).unwrap();
+        let (calls, bytes) = allocated(|| assert!(finder.find(&view, Space::Value).step(1.0) >= 0.0));
+        assert!(number == 0 || (calls, bytes) == (0, 0), "frame {number}: {calls} calls, {bytes} bytes");
     }
 }
