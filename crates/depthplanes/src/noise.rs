@@ -5,12 +5,14 @@
 //! for depth maps, the value itself for all others. Structured light and stereo err by a constant there, time of
 //! flight by a constant in depth; both parts add. [`Estimator`] finds it out from frames.
 
+mod enlarged;
 mod estimate;
 mod ray;
 mod rounding;
 mod steps;
 mod table;
 
+pub use enlarged::{Enlargement, EnlargementFinder};
 pub(crate) use estimate::{Blocks, VALID};
 pub use estimate::{Estimate, Estimator};
 pub(crate) use ray::{Slants, Tiled};

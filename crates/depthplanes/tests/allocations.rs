@@ -5,7 +5,7 @@
 mod naive;
 
 use depthplanes::methods::Method;
-use depthplanes::noise::{RoundingFinder, Space};
+use depthplanes::noise::{EnlargementFinder, RoundingFinder, Space};
 use depthplanes::outline::Outliner;
 use depthplanes::{Coplanar, DepthView, Detector, Error, Intrinsics, Measure, Ngaf, Pixel, Planar, Sensor};
 use naive::Random;
@@ -208,12 +208,18 @@ fn smaller_frames_allocate_nothing_either() {
 }
 
 #[test]
-fn what_later_maps_are_rounded_to_is_found_without_allocating() {
+fn what_later_maps_are_rounded_to_and_enlarged_by_is_found_without_allocating() {
     let (mut random, mut finder) = (Random(6), RoundingFinder::default());
+    let mut enlargement = EnlargementFinder::default();
     for number in 0..25 {
         let frame: Vec<f32> = frame(&mut random, number, 160, 120);
         let view = DepthView::new(&frame, 160, 120).unwrap();
-        let (calls, bytes) = allocated(|| assert!(finder.find(&view, Space::Value).step(1.0) >= 0.0));
+        let doubled: Vec<f32> = (0..160 * 120).map(|at| frame[at / 320 * 80 + at % 160 / 2]).collect();
+        let doubled = DepthView::new(&doubled, 160, 120).unwrap();
+        let (calls, bytes) = allocated(|| {
+            assert!(finder.find(&view, Space::Value).step(1.0) >= 0.0);
+            std::hint::black_box((enlargement.find(&view).is_some(), enlargement.find(&doubled).is_some()));
+        });
         assert!(number == 0 || (calls, bytes) == (0, 0), "frame {number}: {calls} calls, {bytes} bytes");
     }
 }
