@@ -223,3 +223,21 @@ fn what_later_maps_are_rounded_to_and_enlarged_by_is_found_without_allocating() 
         assert!(number == 0 || (calls, bytes) == (0, 0), "frame {number}: {calls} calls, {bytes} bytes");
     }
 }
+
+#[test]
+fn later_frames_that_were_enlarged_allocate_nothing() {
+    let (width, height) = (240, 180);
+    let mut detector = Detector::default().sensor(sensors()[1]);
+    let mut planes = 0;
+    for number in 0..8 {
+        let inverse_depth = |at: usize| {
+            let [u, v] = [at % width / 3, at / width / 3].map(|place| place as f64);
+            0.4 + 0.002 * u + (0.001 + 0.0002 * f64::from(number)) * v + if u < 40.0 { 0.1 } else { 0.0 }
+        };
+        let frame: Vec<u16> = (0..width * height).map(|at| (1e3 / inverse_depth(at)) as u16).collect();
+        let view = DepthView::new(&frame, width, height).unwrap();
+        let (calls, bytes) = allocated(|| planes += detector.detect(view).unwrap().planes.len());
+        assert!(number == 0 || (calls, bytes) == (0, 0), "frame {number}: {calls} calls, {bytes} bytes");
+    }
+    assert!(planes > 0, "no plane in any frame");
+}

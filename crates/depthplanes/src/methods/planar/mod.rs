@@ -10,6 +10,7 @@ mod bent;
 mod bows;
 mod contact;
 mod curved;
+mod enlarged;
 mod explain;
 mod explained;
 mod field;
@@ -49,6 +50,7 @@ use crate::with_view;
 use bent::Bent;
 use contact::Contacts;
 use curved::{Facets, Optics};
+use enlarged::Source;
 use explained::Explainer;
 use field::Field;
 use grow::{Region, Regions};
@@ -189,6 +191,7 @@ struct Runner {
     finisher: Finisher,
     pieces: Pieces,
     strays: Strays,
+    source: Source,
 }
 
 impl Method for Runner {
@@ -197,11 +200,11 @@ impl Method for Runner {
     }
 
     fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        with_view!(map, map => self.planar(map, job, out, &mut |_, _, _| ()))
+        with_view!(map, map => self.planar_of_source(&map, job, out))
     }
 
     fn explain(&mut self, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) -> Result<Explanation> {
-        explain::explain(self, map, job, at)
+        with_view!(map, map => self.explain_of_source(&map, job, at))
     }
 }
 
