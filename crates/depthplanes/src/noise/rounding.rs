@@ -126,8 +126,8 @@ struct Level {
 /// A step and where it was found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Knot {
-    /// The middle of its levels, in bins.
-    at: f64,
+    /// The middle of its levels.
+    q: f64,
     step: f64,
 }
 
@@ -193,7 +193,7 @@ fn table(levels: &[Level], gaps: &mut Vec<f64>, unit: f64, space: Space) -> Opti
             Found::Nothing => unit * space.unit(middle(low.midpoint(high))),
         };
         is_told |= step > unit * space.unit(middle(high));
-        knots[count] = Knot { at: 0.5 * f64::from(low + high), step };
+        knots[count] = Knot { q: middle(low.midpoint(high)), step };
         count += 1;
     }
     if !is_told {
@@ -201,7 +201,8 @@ fn table(levels: &[Level], gaps: &mut Vec<f64>, unit: f64, space: Space) -> Opti
     }
     let mut steps = [0.0; BINS];
     for ((bin, step), most) in (first..).zip(&mut steps).zip(bounds) {
-        *step = between(&knots[..count], bin).min(most).max(unit * space.unit(middle(bin))) as f32;
+        let q = middle(bin);
+        *step = between(&knots[..count], q).min(most).max(unit * space.unit(q)) as f32;
     }
     Some(Rounding(Steps::Table { first, steps }))
 }
@@ -272,32 +273,24 @@ fn sharpened(gaps: &[f64], low: f64, unit: f64, is_dense: bool) -> f64 {
     sum / count
 }
 
-/// The step of a bin by those that were found: a power of q between their middles and beyond the outermost.
-fn between(knots: &[Knot], bin: u32) -> f64 {
-    let at = f64::from(bin);
-    let after = knots.partition_point(|knot| knot.at < at);
-    let [low, high] = match (after.checked_sub(1).map(|before| knots[before]), knots.get(after)) {
-        (Some(low), Some(&high)) => [low, high],
-        (None, Some(&first)) => return beyond(first, knots.get(1), at),
-        (Some(last), None) => return beyond(last, after.checked_sub(2).map(|at| &knots[at]), at),
-        (None, None) => return 0.0,
-    };
-    let share = (at - low.at) / (high.at - low.at);
-    if low.step > 0.0 && high.step > 0.0 {
-        low.step * (high.step / low.step).powf(share)
-    } else if share < 0.5 {
-        low.step
-    } else {
-        high.step
+/// The step at q by those that were found: a line between their middles, and beyond the outermost a power of q.
+fn between(knots: &[Knot], q: f64) -> f64 {
+    let after = knots.partition_point(|knot| knot.q < q);
+    let before = after.checked_sub(1).map(|before| knots[before]);
+    match (before, knots.get(after)) {
+        (Some(low), Some(high)) => low.step + (high.step - low.step) * (q - low.q) / (high.q - low.q),
+        (None, Some(first)) => beyond(first, knots.get(1), q),
+        (Some(last), None) => beyond(&last, after.checked_sub(2).map(|at| &knots[at]), q),
+        (None, None) => 0.0,
     }
 }
 
-/// The step at a place beyond the middle of the outermost stretch, by the power of q that leads to its neighbour's.
-fn beyond(outermost: Knot, next: Option<&Knot>, at: f64) -> f64 {
-    let power = next.filter(|next| next.step > 0.0 && outermost.step > 0.0).map_or(0.0, |next| {
-        // In bins, of which eight double q: from steps that are alike (disparity) to its square (depth).
-        let power = (next.step / outermost.step).log2() * 8.0 / (next.at - outermost.at);
-        power.clamp(0.0, 2.0)
-    });
-    outermost.step * (power * (at - outermost.at) / 8.0).exp2()
+/// The step at a place beyond the middle of the outermost stretch, by the power of q that leads to its neighbour's: 0 as of
+/// disparity, 1, or 2 as of depth. Taken without logarithms, which are not the same on every machine.
+fn beyond(outermost: &Knot, next: Option<&Knot>, q: f64) -> f64 {
+    let Some(next) = next.filter(|next| next.step > 0.0 && outermost.step > 0.0) else { return outermost.step };
+    let [low, high] = if next.q < outermost.q { [next, outermost] } else { [outermost, next] };
+    let (grown, by) = (high.step / low.step, high.q / low.q);
+    let power = i32::from(grown * grown > by) + i32::from(grown * grown > by.powi(3));
+    outermost.step * (q / outermost.q).powi(power)
 }
