@@ -5,15 +5,19 @@
 //! for depth maps, the value itself for all others. Structured light and stereo err by a constant there, time of
 //! flight by a constant in depth; both parts add. [`Estimator`] finds it out from frames.
 
+mod enlarged;
 mod estimate;
 mod ray;
+mod rounding;
 pub(crate) mod scales;
 mod steps;
 mod table;
 
+pub use enlarged::{Enlargement, EnlargementFinder};
 pub(crate) use estimate::{Blocks, VALID};
 pub use estimate::{Estimate, Estimator};
 pub(crate) use ray::{Slants, Tiled};
+pub use rounding::{Rounding, RoundingFinder};
 pub(crate) use steps::Steps;
 pub use table::{MAX_ROWS, NoiseTable};
 
@@ -100,8 +104,8 @@ pub struct NoiseModel {
     /// Inverse depth, 1/m, is `slope q + offset`.
     slope: f64,
     offset: f64,
-    /// Steps of the values, map units.
-    step: f64,
+    /// Steps of q.
+    rounding: Rounding,
     /// Whether the noise holds what rounding does on average.
     is_scatter: bool,
     /// How well the ray of a pixel is known, pixels; 0 where nobody asks.
@@ -114,6 +118,14 @@ pub struct NoiseModel {
 /// What rounding to steps may do, in steps, to all pixels of a small patch at once: on a slow ramp they lie on one
 /// level, up to half a step off, and no average over them helps. (Over many steps it would be 1 / sqrt(12).)
 const ROUNDING: f64 = 0.5;
+
+/// The share of rounding to steps of that square that follows the signal, where pixels scatter by that variance, instead of
+/// being dithered: none from a scatter of half a step on. (The exact share is an exponential of the ratio; this has no
+/// function that differs between machines.)
+#[inline(always)]
+pub(crate) fn steady(square: f64, scatter: f64) -> f64 {
+    if square > 0.0 { (4.0 / 3.0 * (1.0 - 4.0 * scatter / square)).clamp(0.0, 1.0) } else { 0.0 }
+}
 
 impl NoiseModel {
     /// The model of a map whose numbers mean `measure` and come in steps of `step` map units (0 for values that are not
@@ -132,7 +144,8 @@ impl NoiseModel {
             _ => SensorNoise::Depth { base: 0.0, growth: 0.0 },
         };
         let space = Space::of(measure);
-        Some(NoiseModel { noise, space, slope, offset, step, is_scatter: false, ray: 0.0, smooth, smooth_ray: 0.0 })
+        let rounding = Rounding::of_values(step, space);
+        Some(NoiseModel { noise, space, slope, offset, rounding, is_scatter: false, ray: 0.0, smooth, smooth_ray: 0.0 })
     }
 
     /// The same, its noise being the scatter that a map shows, with what rounding does on average.
@@ -143,6 +156,11 @@ impl NoiseModel {
     /// The same for rays that are known to within `ray` pixels, one standard deviation.
     pub(crate) fn with_ray(self, ray: f64) -> Self {
         NoiseModel { ray, ..self }
+    }
+
+    /// The same with other steps of q.
+    pub(crate) fn with_rounding(self, rounding: Rounding) -> Self {
+        NoiseModel { rounding, ..self }
     }
 
     /// The same with a smooth part, of the same kind as the noise.
@@ -169,27 +187,33 @@ impl NoiseModel {
     /// Variance of one pixel's q, rounding taken at its worst.
     #[inline]
     pub fn variance(&self, q: f64) -> f64 {
-        let rounding = ROUNDING * self.step * self.space.unit(q);
+        self.with_sensor(q, self.sensor_sigma(q))
+    }
+
+    /// Variance of one pixel's q where the sensor's own error has that standard deviation.
+    #[inline(always)]
+    fn with_sensor(&self, q: f64, sensor: f64) -> f64 {
+        let square = self.step(q).powi(2);
         let single = 2e-7 * q; // single precision, in which q is kept
-        let sensor = self.sensor_sigma(q);
-        sensor * sensor + rounding * rounding + single * single
+        let steady = self.steady(square, sensor * sensor);
+        // What a map shows as scatter has what noise makes of the steps already.
+        let dithered = if self.is_scatter { 0.0 } else { (1.0 - steady) * square / 12.0 };
+        sensor * sensor + steady * ROUNDING * ROUNDING * square + dithered + single * single
+    }
+
+    /// [`steady`] for the sensor's own error of that variance.
+    #[inline(always)]
+    fn steady(&self, square: f64, sensor: f64) -> f64 {
+        steady(square, if self.is_scatter { sensor } else { sensor + square / 12.0 })
     }
 
     /// [`NoiseModel::variance`] of many.
     #[inline(always)]
     pub(crate) fn variances(&self, q: &[f32], variances: &mut [f32]) {
         let NoiseModel { slope, offset, .. } = *self;
-        let (unit, unit_by_square) = match self.space {
-            Space::InverseDepth { metres } => (0.0, metres),
-            Space::Value => (1.0, 0.0),
-        };
         let per_slope = 1.0 / slope.abs();
         let each = q.iter().zip(variances);
-        let with = |q: f64, sensor: f64| {
-            let rounding = ROUNDING * self.step * (unit + unit_by_square * q * q);
-            let single = 2e-7 * q;
-            (sensor * sensor + rounding * rounding + single * single) as f32
-        };
+        let with = |q: f64, sensor: f64| self.with_sensor(q, sensor) as f32;
         match self.noise {
             SensorNoise::Value { sigma } => each.for_each(|(&q, variance)| *variance = with(q.into(), sigma)),
             SensorNoise::Depth { base, growth } => each.for_each(|(&q, variance)| {
@@ -208,15 +232,16 @@ impl NoiseModel {
             let q = f64::from(q);
             let slope = f64::from(a) * f64::from(a) + f64::from(b) * f64::from(b);
             let sigma = self.smooth_sigma(q);
-            let step = self.step * self.space.unit(q);
-            let rounding = step * step / 12.0 * (step * step / (step * step + side * side * slope + f64::MIN_POSITIVE));
+            let square = self.step(q).powi(2);
+            let steady = self.steady(square, self.sensor_sigma(q).powi(2));
+            let rounding = steady * square / 12.0 * (square / (square + side * side * slope + f64::MIN_POSITIVE));
             *variance = (sigma * sigma + self.smooth_ray * self.smooth_ray * slope + rounding) as f32;
         }
     }
 
     /// What the map's steps are in q, at q.
     pub(crate) fn step(&self, q: f64) -> f64 {
-        self.step * self.space.unit(q)
+        self.rounding.step(q)
     }
 
     /// Standard deviation of q by the noise as stated, rounding left out.
@@ -255,7 +280,7 @@ impl NoiseModel {
     /// the part that follows the signal.
     #[inline]
     pub fn variance_in(&self, patch: &Patch, q: f64) -> f64 {
-        let (sigma, step) = (self.sensor_sigma(q), self.step * self.space.unit(q));
+        let (sigma, step) = (self.sensor_sigma(q), self.step(q));
         if step == 0.0 {
             return sigma * sigma;
         }

@@ -5,6 +5,7 @@
 mod naive;
 
 use depthplanes::methods::Method;
+use depthplanes::noise::{EnlargementFinder, RoundingFinder, Space};
 use depthplanes::outline::Outliner;
 use depthplanes::{Coplanar, DepthView, Detector, Error, Intrinsics, Measure, Ngaf, Pixel, Planar, Sensor};
 use naive::Random;
@@ -204,4 +205,39 @@ fn smaller_frames_allocate_nothing_either() {
         let (calls, bytes) = allocated(|| assert!(detector.detect(view).is_ok()));
         assert!(number == 0 || (calls, bytes) == (0, 0), "{width}x{height}: {calls} calls, {bytes} bytes");
     }
+}
+
+#[test]
+fn what_later_maps_are_rounded_to_and_enlarged_by_is_found_without_allocating() {
+    let (mut random, mut finder) = (Random(6), RoundingFinder::default());
+    let mut enlargement = EnlargementFinder::default();
+    for number in 0..25 {
+        let frame: Vec<f32> = frame(&mut random, number, 160, 120);
+        let view = DepthView::new(&frame, 160, 120).unwrap();
+        let doubled: Vec<f32> = (0..160 * 120).map(|at| frame[at / 320 * 80 + at % 160 / 2]).collect();
+        let doubled = DepthView::new(&doubled, 160, 120).unwrap();
+        let (calls, bytes) = allocated(|| {
+            assert!(finder.find(&view, Space::Value).step(1.0) >= 0.0);
+            std::hint::black_box((enlargement.find(&view).is_some(), enlargement.find(&doubled).is_some()));
+        });
+        assert!(number == 0 || (calls, bytes) == (0, 0), "frame {number}: {calls} calls, {bytes} bytes");
+    }
+}
+
+#[test]
+fn later_frames_that_were_enlarged_allocate_nothing() {
+    let (width, height) = (240, 180);
+    let mut detector = Detector::default().sensor(sensors()[1]);
+    let mut planes = 0;
+    for number in 0..8 {
+        let inverse_depth = |at: usize| {
+            let [u, v] = [at % width / 3, at / width / 3].map(|place| place as f64);
+            0.4 + 0.002 * u + (0.001 + 0.0002 * f64::from(number)) * v + if u < 40.0 { 0.1 } else { 0.0 }
+        };
+        let frame: Vec<u16> = (0..width * height).map(|at| (1e3 / inverse_depth(at)) as u16).collect();
+        let view = DepthView::new(&frame, width, height).unwrap();
+        let (calls, bytes) = allocated(|| planes += detector.detect(view).unwrap().planes.len());
+        assert!(number == 0 || (calls, bytes) == (0, 0), "frame {number}: {calls} calls, {bytes} bytes");
+    }
+    assert!(planes > 0, "no plane in any frame");
 }

@@ -5,7 +5,7 @@
 //! side, smooth error does not; nor does what a scene's edges make, which the median passes over as long as they are less
 //! than half of what is looked at.
 
-use super::{SensorNoise, Space};
+use super::{Rounding, SensorNoise, Space, steady};
 use crate::group::reserve_to;
 
 /// Sides of the cells, pixels.
@@ -85,13 +85,16 @@ impl Scales {
     }
 
     /// The errors that explain what was seen; none if too little was.
-    pub(crate) fn errors(&mut self, space: Space, step: f64) -> Option<Errors> {
+    pub(crate) fn errors(&mut self, space: Space, rounding: &Rounding) -> Option<Errors> {
         let Scales { bends: [fine, middle, coarse], tiles, numbers } = self;
         if fine.len() < FEW {
             return None;
         }
         let [constant, square] = shape(fine, numbers, space);
-        let facing = |q: f32| (constant + square * f64::from(q) * f64::from(q)).powi(2) + floor(q.into(), space, step);
+        let facing = |q: f32| (constant + square * f64::from(q) * f64::from(q)).powi(2) + floor(q.into(), rounding);
+        let pixels = tiles.iter().map(|tile| (f64::from(tile.square) / facing(tile.q)) as f32);
+        let at_most = if tiles.len() < FEW { 16.0 } else { median(numbers, pixels) * 13.0 / MEDIAN_OF_TILE };
+        let shared = |bend: &Bend, side: f64| shared(bend, side, rounding, at_most * facing(bend.q));
         // Of the slope: what the steeper half shows beyond the flatter one.
         let half = fine.len() / 2;
         fine.select_nth_unstable_by(half, |a, b| a.slope.total_cmp(&b.slope));
@@ -103,13 +106,13 @@ impl Scales {
         let (of_flat, of_steep) = (of(flat, numbers), of(steep, numbers));
         let excess = of_steep - STEEP * of_flat;
         let ray = if excess > 0.0 {
-            ray_of(steep, numbers, |bend| of_flat * facing(bend.q) + shared(bend, 4.0, space, step))
+            ray_of(steep, numbers, |bend| of_flat * facing(bend.q) + shared(bend, 4.0))
         } else {
             0.0
         };
         let level = if ray > 0.0 { of_flat.sqrt() } else { 1.0 };
         let found = Errors { constant: constant * level, square: square * level, ray, white: 4.0, smooth: 0.25 };
-        let variance = |q: f32, slope: f32| found.variance(q.into(), slope.into()) + floor(q.into(), space, step);
+        let variance = |q: f32, slope: f32| found.variance(q.into(), slope.into()) + floor(q.into(), rounding);
         let pixels = tiles.iter().map(|tile| (f64::from(tile.square) / variance(tile.q, tile.slope)) as f32);
         let white = if tiles.len() < FEW { 4.0 } else { (median(numbers, pixels) * 13.0 / MEDIAN_OF_TILE).sqrt() };
         let mut ratio = |bends: &[Bend], side: f64, least: f64, most: f64| {
@@ -117,10 +120,10 @@ impl Scales {
                 return least;
             }
             let squares = bends.iter().map(|bend| {
-                let expected = variance(bend.q, bend.slope) + shared(bend, side, space, step);
+                let expected = variance(bend.q, bend.slope) + shared(bend, side);
                 (f64::from(bend.square) / expected) as f32
             });
-            { (median(numbers, squares) / MEDIAN_OF_SQUARE).sqrt().clamp(least, most) }
+            (median(numbers, squares) / MEDIAN_OF_SQUARE).sqrt().clamp(least, most)
         };
         let of_middle = ratio(middle, 8.0, 0.5, GROWTH);
         let smooth = ratio(coarse, 16.0, 0.5 * of_middle.min(0.5), GROWTH * of_middle);
@@ -149,15 +152,16 @@ impl Errors {
 }
 
 /// Variance of the mean over a tile that rounding and single precision make at least.
-fn floor(q: f64, space: Space, step: f64) -> f64 {
-    let (rounding, single) = (step * space.unit(q), 2e-7 * q);
-    rounding * rounding / (12.0 * 16.0) + single * single
+fn floor(q: f64, rounding: &Rounding) -> f64 {
+    let single = 2e-7 * q;
+    rounding.variance(q) / 16.0 + single * single
 }
 
 /// Variance that rounding makes of the mean over a cell of so many pixels a side, where a slope passes few steps in it.
-fn shared(bend: &Bend, side: f64, space: Space, step: f64) -> f64 {
-    let square = (step * space.unit(bend.q.into())).powi(2);
-    if square == 0.0 { 0.0 } else { square / 12.0 * square / (square + side * side * f64::from(bend.slope)) }
+fn shared(bend: &Bend, side: f64, rounding: &Rounding, scatter: f64) -> f64 {
+    let square = rounding.step(bend.q.into()).powi(2);
+    let level = square / (square + side * side * f64::from(bend.slope) + f64::MIN_POSITIVE);
+    steady(square, scatter) * square / 12.0 * level
 }
 
 /// Constant and square of the error, by its scatter in stretches of q: the ratio of both that leaves the least in the

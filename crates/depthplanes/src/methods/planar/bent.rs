@@ -51,21 +51,7 @@ impl Runner {
         self.assign(noise, true, job.threads);
         self.join_facets(noise);
         let Runner { params, field, image, finisher, .. } = self;
-        let Finisher { grouper, selection, describer } = finisher;
-        let ids = of_image(image, field)?;
-        let groups = grouper.group(&ids, &LinkRule::new(ids.validity(), 0.0)?, job.threads);
-        selection.select(groups, params.min)?;
-        describer.tally(map, selection.runs(groups), 0, &job.sensor, job.threads);
-        let Curved { mut labels, mut regions } = old.unwrap_or_default();
-        selection.paint(groups, &mut labels);
-        regions.clear();
-        regions.extend((1..).zip(describer.tallies()).map(|(label, tally)| CurvedRegion {
-            label,
-            pixel_count: tally.pixel_count,
-            bounding_box: tally.bounding_box,
-            centroid: tally.centroid,
-        }));
-        Ok(Curved { labels, regions })
+        curved_of(finisher, map, &of_image(image, field)?, params.min, job, old)
     }
 
     /// Gives the facets of one surface one number in the region image.
@@ -81,4 +67,32 @@ impl Runner {
         }
         image.iter_mut().filter(|id| **id > 0).for_each(|id| *id = bent.root(*id - 1) + 1);
     }
+}
+
+/// The curved regions of an image of labels. `old`: memory to reuse.
+///
+/// # Errors
+/// [`crate::Error::TooManyPlanes`] if they are more than labels can name.
+pub(super) fn curved_of<T: Pixel>(
+    finisher: &mut Finisher,
+    map: &DepthView<'_, T>,
+    ids: &DepthView<'_, u16>,
+    min: u32,
+    job: &Job<'_>,
+    old: Option<Curved>,
+) -> Result<Curved> {
+    let Finisher { grouper, selection, describer } = finisher;
+    let groups = grouper.group(ids, &LinkRule::new(ids.validity(), 0.0)?, job.threads);
+    selection.select(groups, min)?;
+    describer.tally(map, selection.runs(groups), 0, &job.sensor, job.threads);
+    let Curved { mut labels, mut regions } = old.unwrap_or_default();
+    selection.paint(groups, &mut labels);
+    regions.clear();
+    regions.extend((1..).zip(describer.tallies()).map(|(label, tally)| CurvedRegion {
+        label,
+        pixel_count: tally.pixel_count,
+        bounding_box: tally.bounding_box,
+        centroid: tally.centroid,
+    }));
+    Ok(Curved { labels, regions })
 }

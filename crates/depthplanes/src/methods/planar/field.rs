@@ -6,7 +6,7 @@
 use super::pyramid::LEVELS;
 use super::tiles::{LANES, SIDE};
 use crate::map::{DepthView, Pixel, Validity};
-use crate::noise::{Space, Steps};
+use crate::noise::Space;
 
 /// Columns of the coarsest cells that are summed at a time.
 pub(super) const COLUMNS: usize = LANES * ROWS;
@@ -24,13 +24,10 @@ pub(super) struct Field {
     pub(super) rows: usize,
     pub(super) q: Vec<f32>,
     pub(super) valid_pixels: usize,
-    /// Steps that the map's values come in, map units; 0 for values that are not rounded.
-    pub(super) step: f64,
-    steps: Steps,
 }
 
 impl Field {
-    /// Makes room for a map, and finds its steps.
+    /// Makes room for a map.
     pub(super) fn prepare<T: Pixel>(&mut self, map: &DepthView<'_, T>) {
         let (width, height) = (map.width(), map.height());
         if (self.width, self.height) != (width, height) {
@@ -39,7 +36,6 @@ impl Field {
             self.q.clear();
             self.q.resize(self.stride * self.rows, f32::NAN);
         }
-        self.step = self.steps.of(map);
     }
 }
 

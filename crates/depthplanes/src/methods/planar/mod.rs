@@ -10,6 +10,7 @@ mod bent;
 mod bows;
 mod contact;
 mod curved;
+mod enlarged;
 mod explain;
 mod explained;
 mod field;
@@ -43,12 +44,13 @@ use crate::explanation::Explanation;
 use crate::group::Grouper;
 use crate::map::{AnyView, DepthView, Pixel};
 use crate::noise::scales::{Errors, RAY, Scales};
-use crate::noise::{NoiseModel, Space};
+use crate::noise::{NoiseModel, RoundingFinder, Space};
 use crate::parallel::side_by_side;
 use crate::with_view;
 use bent::Bent;
 use contact::Contacts;
 use curved::{Facets, Optics};
+use enlarged::Source;
 use explained::Explainer;
 use field::Field;
 use grow::{Region, Regions};
@@ -172,6 +174,7 @@ struct Runner {
     params: Planar,
     field: Field,
     pyramid: Pyramid,
+    rounding: RoundingFinder,
     scales: Scales,
     regions: Regions,
     merger: Merger,
@@ -184,6 +187,7 @@ struct Runner {
     bent: Bent,
     finisher: Finisher,
     pieces: Pieces,
+    source: Source,
 }
 
 impl Method for Runner {
@@ -192,11 +196,11 @@ impl Method for Runner {
     }
 
     fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        with_view!(map, map => self.planar(map, job, out, &mut |_, _, _| ()))
+        with_view!(map, map => self.planar_of_source(&map, job, out))
     }
 
     fn explain(&mut self, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) -> Result<Explanation> {
-        explain::explain(self, map, job, at)
+        with_view!(map, map => self.explain_of_source(&map, job, at))
     }
 }
 
@@ -263,15 +267,16 @@ impl Runner {
 
     /// The map in the space where planes are affine, its tiles, and the noise to expect.
     fn sum_tiles<T: Pixel>(&mut self, map: &DepthView<'_, T>, job: &Job<'_>) -> NoiseModel {
-        let Runner { params, field, pyramid, scales, .. } = self;
+        let Runner { params, field, pyramid, scales, rounding, .. } = self;
         let sensor = &job.sensor;
         let space = Space::of(sensor.measure);
         field.prepare(map);
+        let rounding = rounding.find(map, space);
         pyramid.sum(map, space, job.threads, field);
-        let model = |noise| NoiseModel::new(sensor.measure, noise, field.step);
+        let model = |noise| Some(NoiseModel::new(sensor.measure, noise, 0.0)?.with_rounding(rounding));
         let stated = stated(space, params.noise, params.noise_growth).or(sensor.noise).and_then(model);
         scales.look(pyramid);
-        let errors = scales.errors(space, field.step).unwrap_or(Errors {
+        let errors = scales.errors(space, &rounding).unwrap_or(Errors {
             constant: 0.0,
             square: 0.0,
             ray: 0.0,

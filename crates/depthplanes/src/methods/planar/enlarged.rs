@@ -1,0 +1,296 @@
+//! Maps that were enlarged by repeating pixels are worked on as they were before.
+//!
+//! In: a map. Out: its detection. Of an enlarged map ([`EnlargementFinder`]) the stages see the source: one value a pixel,
+//! seen by a camera of as many pixels. Its planes are then painted on the whole map, grouped, selected and fitted there,
+//! so that `min`, areas and places are those of the map that was given. Repeated pixels say no more than one: errors of
+//! planes are those of the source's pixels.
+
+use super::bent::curved_of;
+use super::{INFO, Planar, Runner, explain};
+use crate::camera::{Intrinsics, Sensor};
+use crate::detection::Detection;
+use crate::error::Result;
+use crate::explanation::{Explanation, Finding, Suggestion, Verdict};
+use crate::group::{Grouper, Run, reserve_to};
+use crate::map::{DepthView, Pixel, Validity};
+use crate::methods::Job;
+use crate::methods::finish::{Finisher, STAGES, Wanted};
+use crate::methods::tries::Tries;
+use crate::noise::{Enlargement, EnlargementFinder};
+
+/// Fewest pixels of the source that are asked of a plane: those of a tile. `min` may be less than that.
+const TILE: u32 = 16;
+
+/// The source of a map and what was found in it; reuses its memory.
+#[derive(Default)]
+pub(super) struct Source {
+    finder: EnlargementFinder,
+    /// One value a source pixel; single precision holds integers of 16 bits exactly.
+    pixels: Vec<f32>,
+    found: Detection,
+    /// Labels of the source on the whole map.
+    image: Vec<u16>,
+    finisher: Finisher,
+    pieces: Pieces,
+}
+
+impl Runner {
+    /// Finds planes in a map, enlarged or not.
+    ///
+    /// # Errors
+    /// As [`crate::methods::Method::run`].
+    pub(super) fn planar_of_source<T: Pixel>(
+        &mut self,
+        map: &DepthView<'_, T>,
+        job: &mut Job<'_>,
+        out: &mut Detection,
+    ) -> Result<()> {
+        let mut source = std::mem::take(&mut self.source);
+        let result = source.run(self, map, job, out);
+        self.source = source;
+        result
+    }
+
+    /// Says why a pixel has a plane or none; of an enlarged map it is the source pixel that is looked at.
+    ///
+    /// # Errors
+    /// As [`crate::methods::Method::explain`].
+    pub(super) fn explain_of_source<T: Pixel>(
+        &mut self,
+        map: &DepthView<'_, T>,
+        job: &mut Job<'_>,
+        at: [usize; 2],
+    ) -> Result<Explanation> {
+        let mut source = std::mem::take(&mut self.source);
+        let result = source.explain(self, map, job, at);
+        self.source = source;
+        result
+    }
+}
+
+impl Source {
+    fn run<T: Pixel>(
+        &mut self,
+        runner: &mut Runner,
+        map: &DepthView<'_, T>,
+        job: &mut Job<'_>,
+        out: &mut Detection,
+    ) -> Result<()> {
+        let Source { finder, pixels, found, image, finisher, pieces } = self;
+        let Some(enlargement) = finder.find(map) else { return runner.planar(*map, job, out, &mut |_, _, _| ()) };
+        let Planar { min, min_area, .. } = runner.params;
+        if min_area > 0.0 {
+            job.sensor.check_metric("min-area")?;
+        }
+        let mut noise = None;
+        let view = shrunk(map, &enlargement, pixels)?;
+        with_source(runner, job, &enlargement, |runner, job| {
+            runner.params.min_area = 0.0;
+            runner.planar(view, job, found, &mut |_, _, seen| noise = Some(*seen))
+        })?;
+        let labels = enlarge(&found.labels, &enlargement, map, image)?;
+        let wanted = Wanted { min, min_area, noise: noise.as_ref(), valid_pixels: map.valid_pixels() };
+        finisher.finish_united(map, &labels, &wanted, |grouper| pieces.join(&labels, grouper), job, out)?;
+        errors_of_source(found, labels, &enlargement, out);
+        let old = out.curved.take();
+        if let Some(curved) = &found.curved {
+            let labels = enlarge(&curved.labels, &enlargement, map, image)?;
+            out.curved = Some(curved_of(finisher, map, &labels, min, job, old)?);
+            job.done("label");
+        }
+        Ok(())
+    }
+
+    fn explain<T: Pixel>(
+        &mut self,
+        runner: &mut Runner,
+        map: &DepthView<'_, T>,
+        job: &mut Job<'_>,
+        at: [usize; 2],
+    ) -> Result<Explanation> {
+        let Some(enlargement) = self.finder.find(map) else {
+            return explain::explain(runner, (*map).into(), job, at);
+        };
+        let factor @ [x, y] = enlargement.factor;
+        let place = [0, 1].map(|axis| {
+            let firsts = [enlargement.columns, enlargement.rows][axis];
+            firsts.partition_point(|&first| first as usize <= at[axis]) - 1
+        });
+        let view = shrunk(map, &enlargement, &mut self.pixels)?;
+        let mut explanation =
+            with_source(runner, job, &enlargement, |runner, job| explain::explain(runner, view.into(), job, place))?;
+        let mut out = Detection::default();
+        self.run(runner, map, job, &mut out)?;
+        let subject =
+            format!("the pixel's source, column {}, row {}: what follows is of the source", place[0], place[1]);
+        let finding = Finding::new("map", subject, "the map was enlarged by repeating pixels");
+        explanation.findings.insert(0, finding.with("columns", x, "").with("rows", y, ""));
+        explanation.verdict = self.verdict(explanation.verdict, runner.params.min, factor, &out, at);
+        explanation.suggestions = retried(explanation.suggestions, runner, map, job.sensor, at, &out, factor);
+        explanation.at = at;
+        Ok(explanation)
+    }
+
+    /// The verdict on a source pixel as one on pixels of the whole map.
+    fn verdict(&self, of_source: Verdict, min: u32, [x, y]: [f64; 2], out: &Detection, at: [usize; 2]) -> Verdict {
+        let whole = |pixels: usize| (pixels as f64 * x * y).round() as usize;
+        let label = out.labels[at[1] * out.width + at[0]];
+        match of_source {
+            _ if label > 0 => {
+                let off = if let Verdict::Plane { off, .. } = of_source { off } else { None };
+                Verdict::Plane { label, pixels: out.planes[usize::from(label) - 1].pixel_count, off }
+            }
+            Verdict::Plane { pixels, .. } => Verdict::Small { pixels: whole(pixels), min, early: false },
+            Verdict::Small { pixels, early, .. } => Verdict::Small { pixels: whole(pixels), min, early },
+            Verdict::Off { off, most, label } => Verdict::Off { off, most, label: self.label_of(label, out) },
+            other => other,
+        }
+    }
+
+    /// The label in the whole map of a plane of the source; 0 if it has none.
+    fn label_of(&self, of_source: u16, out: &Detection) -> u16 {
+        let first = self.image.iter().position(|&label| of_source > 0 && label == of_source);
+        first.map_or(0, |first| out.labels[first])
+    }
+}
+
+/// The suggestions for a source pixel that work on the whole map too.
+fn retried<T: Pixel>(
+    suggestions: Vec<Suggestion>,
+    runner: &Runner,
+    map: &DepthView<'_, T>,
+    sensor: Sensor,
+    at: [usize; 2],
+    out: &Detection,
+    [x, y]: [f64; 2],
+) -> Vec<Suggestion> {
+    let values = runner.params.values();
+    let tries = Tries { info: &INFO, values: &values, map: (*map).into(), sensor, at, planes: out.planes.len() };
+    let of_whole = |(name, value): (&'static str, f64)| match name {
+        "min" => (name, (value * x.floor() * y.floor()).floor()),
+        _ => (name, value),
+    };
+    let changes = suggestions.into_iter().map(|suggestion| suggestion.parameters.into_iter().map(of_whole).collect());
+    changes.filter_map(|change| tries.first([change])).collect()
+}
+
+/// Runs something on the source of a map: with parameters and a sensor for its pixels. The stages up to the region image
+/// are told, the others are those of the whole map.
+fn with_source<R>(
+    runner: &mut Runner,
+    job: &mut Job<'_>,
+    enlargement: &Enlargement<'_>,
+    run: impl FnOnce(&mut Runner, &mut Job<'_>) -> Result<R>,
+) -> Result<R> {
+    let [x, y] = enlargement.factor;
+    let params = runner.params;
+    // A plane of more than `min` pixels has more than this of the source, whatever the blocks.
+    let min = params.min / (x.ceil() * y.ceil()) as u32;
+    runner.params = Planar { min: min.max(params.min.min(TILE)), ray: params.ray / (x * y).sqrt(), ..params };
+    // Pixel centres are at integers.
+    let camera = |Intrinsics { fx, fy, cx, cy }| Intrinsics {
+        fx: fx / x,
+        fy: fy / y,
+        cx: (cx + 0.5) / x - 0.5,
+        cy: (cy + 0.5) / y - 0.5,
+    };
+    let sensor = Sensor { intrinsics: job.sensor.intrinsics.map(camera), ..job.sensor };
+    let observer = &mut *job.observer;
+    let mut observe = |stage: &'static str| {
+        if !STAGES.contains(&stage) {
+            observer(stage);
+        }
+    };
+    let mut job = Job { sensor, threads: job.threads, curved: job.curved, joiner: None, observer: &mut observe };
+    let result = run(runner, &mut job);
+    runner.params = params;
+    result
+}
+
+/// The source of a map.
+fn shrunk<'a, T: Pixel>(
+    map: &DepthView<'_, T>,
+    Enlargement { columns, rows, .. }: &Enlargement<'_>,
+    pixels: &'a mut Vec<f32>,
+) -> Result<DepthView<'a, f32>> {
+    reserve_to(pixels, map.area());
+    for &v in *rows {
+        let row = map.row(v as usize);
+        pixels.extend(columns.iter().map(|&u| row[u as usize].to_f32()));
+    }
+    let Validity { low, high, sentinel } = map.validity();
+    let view = DepthView::new(&pixels[..], columns.len(), rows.len())?;
+    view.missing_value(sentinel.to_f32()).valid_range(low.to_f32(), high.to_f32())
+}
+
+/// Labels of the source as an image of the whole map, in which 0 is missing.
+fn enlarge<'a, T: Pixel>(
+    labels: &[u16],
+    Enlargement { columns, rows, .. }: &Enlargement<'_>,
+    map: &DepthView<'_, T>,
+    image: &'a mut Vec<u16>,
+) -> Result<DepthView<'a, u16>> {
+    let (width, height) = (map.width(), map.height());
+    reserve_to(image, map.area());
+    for (k, labels) in labels.chunks(columns.len()).enumerate() {
+        let first = image.len();
+        let ends = columns[1..].iter().copied().chain([width as u32]);
+        for ((&label, &from), to) in labels.iter().zip(*columns).zip(ends) {
+            image.extend(std::iter::repeat_n(label, (to - from) as usize));
+        }
+        let end = rows.get(k + 1).map_or(height, |&row| row as usize);
+        (rows[k] as usize + 1..end).for_each(|_| image.extend_from_within(first..first + width));
+    }
+    DepthView::new(image, width, height)?.valid_range(1, u16::MAX)
+}
+
+/// Joins groups of one label: pieces that were one plane in the source.
+#[derive(Default)]
+struct Pieces {
+    pairs: Vec<[u32; 2]>,
+    /// For each label the first group that has it.
+    first: Vec<Option<u32>>,
+}
+
+impl Pieces {
+    fn join(&mut self, labels: &DepthView<'_, u16>, grouper: &mut Grouper) {
+        let Pieces { pairs, first } = self;
+        reserve_to(pairs, labels.area());
+        first.clear();
+        first.resize(usize::from(u16::MAX) + 1, None);
+        grouper.groups().each_run(|Run { v, u_first, group, .. }| {
+            let label = labels.row(v as usize)[u_first as usize];
+            let first = *first[usize::from(label)].get_or_insert(group);
+            if first != group && pairs.last() != Some(&[first, group]) {
+                pairs.push([first, group]);
+            }
+        });
+        grouper.unite(pairs);
+    }
+}
+
+/// Gives planes the errors that they have in the source: repeated pixels say no more than one, and what a plane rises by
+/// within a block is no noise. Planes that were joined have none there; theirs fall with the number of pixels.
+fn errors_of_source(found: &Detection, labels: DepthView<'_, u16>, enlargement: &Enlargement<'_>, out: &mut Detection) {
+    let [x, y] = enlargement.factor;
+    let Detection { planes, parts, width, .. } = out;
+    let parts_of = |label: u16| parts.iter().any(|part| part.of == label);
+    for plane in planes.iter_mut() {
+        let Some(metric) = &mut plane.metric else { continue };
+        let top = plane.bounding_box.v_min as usize;
+        let place = out.labels[top * *width..][..*width].iter().position(|&label| label == plane.label);
+        let of_source = place.and_then(|u| found.planes.get(usize::from(labels.row(top)[u]).checked_sub(1)?));
+        match of_source.and_then(|plane| plane.metric.as_ref()).filter(|_| !parts_of(plane.label)) {
+            Some(right) => {
+                (metric.covariance, metric.covariance_from) = (right.covariance, right.covariance_from);
+            }
+            None => widen(&mut metric.covariance, x * y),
+        }
+    }
+    let parts = parts.iter_mut().filter_map(|part| part.plane.metric.as_mut());
+    parts.for_each(|metric| widen(&mut metric.covariance, x * y));
+}
+
+fn widen(covariance: &mut [[f64; 4]; 4], times: f64) {
+    covariance.as_flattened_mut().iter_mut().for_each(|number| *number *= times);
+}

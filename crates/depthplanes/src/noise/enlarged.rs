@@ -1,0 +1,195 @@
+//! Whether a map was enlarged by repeating pixels.
+//!
+//! In: a map. Out: an [`Enlargement`]: which columns and rows the pixels of the source begin in. Enlarging to the nearest
+//! pixel makes steps that face the camera out of every slanted plane, and values that err alike in whole blocks.
+//!
+//! A map is enlarged where columns (and rows) differ from those before them at the borders of source pixels only, which
+//! are evenly spaced, two pixels and more apart, from the map's edge on. Planes that face the camera, constant maps and
+//! coarse disparities differ in few columns: it takes so many that by chance they would not all be borders. Where it is
+//! chance all the same nothing is lost, for pixels of one block are alike.
+
+use crate::group::vectorised;
+use crate::map::{DepthView, Pixel};
+
+#[cfg(test)]
+mod tests;
+
+/// Smallest and largest factor.
+const FACTORS: [f64; 2] = [2.0, 8.0];
+/// Rows, and columns, that are looked at first.
+const FIRST: usize = 16;
+/// How unlikely it is by chance that the columns which differ are borders, bits, for columns and for rows. Some hundred
+/// factors are tried, each with two or three phases: of a thousand ordinary maps one may pass for columns, and of these
+/// one in a million for both.
+const CERTAIN: f64 = 10.0;
+/// The same for both together.
+const CERTAIN_BOTH: f64 = 40.0;
+
+/// What source pixels became of a map that was enlarged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Enlargement<'a> {
+    /// The first column of each column of the source, ascending from 0.
+    pub columns: &'a [u32],
+    /// The first row of each row of the source.
+    pub rows: &'a [u32],
+    /// Columns and rows that a source pixel became, 2 to 8: source pixel i has its centre at `(i + 0.5) factor - 0.5`.
+    pub factor: [f64; 2],
+}
+
+/// Finds out whether maps were enlarged; reuses its memory.
+#[derive(Debug, Default)]
+pub struct EnlargementFinder {
+    columns: Axis,
+    rows: Axis,
+}
+
+/// Columns, or rows.
+#[derive(Debug, Default)]
+struct Axis {
+    /// Whether a column differs from the one before.
+    differs: Vec<bool>,
+    /// First columns of source pixels.
+    starts: Vec<u32>,
+}
+
+impl EnlargementFinder {
+    /// How a map was enlarged, both ways; `None` unless that is certain.
+    ///
+    /// ```
+    /// use depthplanes::DepthView;
+    /// use depthplanes::noise::EnlargementFinder;
+    /// // 60 x 60 pixels of 30 x 30, on a slant.
+    /// let depth_mm: Vec<u16> = (0..60 * 60).map(|at| 1000 + (at % 60 / 2 * 5 + at / 60 / 2 * 3) as u16).collect();
+    /// let mut finder = EnlargementFinder::default();
+    /// let found = finder.find(&DepthView::new(&depth_mm, 60, 60)?).unwrap();
+    /// assert_eq!((found.factor, &found.columns[..4]), ([2.0, 2.0], &[0, 2, 4, 6][..]));
+    /// # Ok::<(), depthplanes::Error>(())
+    /// ```
+    pub fn find<T: Pixel>(&mut self, map: &DepthView<'_, T>) -> Option<Enlargement<'_>> {
+        let EnlargementFinder { columns, rows } = self;
+        columns.start(map.width());
+        rows.start(map.height());
+        // A few rows first: of ordinary maps the first tells.
+        for v in (0..map.height()).step_by(map.height().div_ceil(FIRST)) {
+            compare_columns(map, v, &mut columns.differs);
+            if !columns.is_possible() {
+                return None;
+            }
+        }
+        vectorised(
+            #[inline(always)]
+            || {
+                for v in 0..map.height() {
+                    compare_columns(map, v, &mut columns.differs);
+                    rows.differs[v] = v > 0 && differ(map, [v - 1, v]);
+                    if v % FIRST == 0 && !(columns.is_possible() && rows.is_possible()) {
+                        return;
+                    }
+                }
+            },
+        );
+        if !(columns.is_possible() && rows.is_possible()) {
+            return None;
+        }
+        // Where few columns differ several factors fit: rather a round one, or one that is that of the rows too.
+        let common = columns.largest(columns.whole().filter(|&factor| rows.fits(factor)));
+        let factor_of = |axis: &Axis| axis.largest(round()).or(common).or_else(|| axis.largest(axis.whole()));
+        let factor = [factor_of(columns)?, factor_of(rows)?];
+        if columns.evidence(factor[0]) + rows.evidence(factor[1]) < CERTAIN_BOTH {
+            return None;
+        }
+        columns.list(factor[0]);
+        rows.list(factor[1]);
+        Some(Enlargement { columns: &columns.starts, rows: &rows.starts, factor })
+    }
+}
+
+/// Marks the columns that differ in a row from the one before. What is missing is alike.
+#[inline(always)]
+fn compare_columns<T: Pixel>(map: &DepthView<'_, T>, v: usize, differs: &mut [bool]) {
+    let validity = map.validity();
+    let row = map.row(v);
+    for ((differs, &a), &b) in differs[1..].iter_mut().zip(row).zip(&row[1..]) {
+        *differs |= (a != b) & (validity.holds(a) | validity.holds(b));
+    }
+}
+
+/// Whether two rows differ.
+#[inline(always)]
+fn differ<T: Pixel>(map: &DepthView<'_, T>, [a, b]: [usize; 2]) -> bool {
+    let validity = map.validity();
+    let mut differ = false;
+    for (&a, &b) in map.row(a).iter().zip(map.row(b)) {
+        differ |= (a != b) & (validity.holds(a) | validity.holds(b));
+    }
+    differ
+}
+
+/// Whole and half numbers, whether or not whole source pixels fill the map: it may have been cut off.
+fn round() -> impl Iterator<Item = f64> {
+    let [least, most] = FACTORS.map(|factor| 2 * factor as usize);
+    (least..=most).map(|halves| 0.5 * halves as f64)
+}
+
+impl Axis {
+    fn start(&mut self, length: usize) {
+        self.differs.clear();
+        self.differs.resize(length, false);
+        self.starts.clear();
+        self.starts.reserve(length);
+    }
+
+    /// Whether no two columns in a row differ from the ones before them.
+    fn is_possible(&self) -> bool {
+        self.differs.windows(2).all(|pair| pair != [true, true])
+    }
+
+    /// The factors by which whole source pixels fill the map.
+    fn whole(&self) -> impl Iterator<Item = f64> + use<> {
+        let ([least, most], length) = (FACTORS.map(|factor| factor as usize), self.differs.len());
+        (length.div_ceil(most)..=length / least).map(move |pixels| length as f64 / pixels as f64)
+    }
+
+    /// The largest of some factors that fit.
+    fn largest(&self, factors: impl Iterator<Item = f64>) -> Option<f64> {
+        factors.filter(|&factor| self.fits(factor)).max_by(f64::total_cmp)
+    }
+
+    /// Whether all columns that differ are borders of source pixels enlarged by that factor, and enough of them.
+    fn fits(&self, factor: f64) -> bool {
+        self.evidence(factor) >= CERTAIN && self.phase(factor).is_some()
+    }
+
+    /// Lists the first columns of source pixels.
+    fn list(&mut self, factor: f64) {
+        let length = self.differs.len();
+        let phase = self.phase(factor).unwrap_or(0.0);
+        let borders = (0..).map(|k| (f64::from(k) * factor + phase).ceil().max(0.0) as u32);
+        self.starts.extend(borders.take_while(|&border| (border as usize) < length));
+    }
+
+    /// How unlikely it is that all columns that differ are borders by chance, bits: one column in `factor` is a border.
+    fn evidence(&self, factor: f64) -> f64 {
+        self.differs.iter().filter(|differs| **differs).count() as f64 * factor.log2()
+    }
+
+    /// The phase with which all columns that differ are `ceil(k factor + phase)`, above -1 to 0: 0 where a column is of the
+    /// source pixel of its left edge, -0.5 where it is of that of its centre.
+    fn phase(&self, factor: f64) -> Option<f64> {
+        let [mut low, mut high] = [-1.0f64, 0.0f64];
+        for (at, _) in self.differs.iter().enumerate().filter(|(_, differs)| **differs) {
+            let border = ((at + 1) as f64 / factor + TINY).floor() * factor;
+            let off = at as f64 - border;
+            (low, high) = (low.max(off - 1.0), high.min(off));
+            if low > high - TINY {
+                return None;
+            }
+        }
+        let holds = |phase: &f64| low + TINY < *phase && *phase <= high + TINY;
+        // Off the numbers at which rounding would tell.
+        Some([-0.5, 0.0].into_iter().find(holds).unwrap_or(high) - TINY)
+    }
+}
+
+/// Far below what a source pixel's border is off of whole pixels, far above the rounding of numbers of pixels.
+const TINY: f64 = 1e-6;
