@@ -20,6 +20,8 @@ const STRETCHES: usize = 6;
 const SHAPES: usize = 17;
 /// Median of the square of a standard normal number, and of chi-squared of the 13 degrees of freedom of a tile.
 const MEDIAN_OF_SQUARE: f64 = 0.454_936;
+/// The lower quartile of the first.
+const QUARTILE_OF_SQUARE: f64 = 0.101_531;
 const MEDIAN_OF_TILE: f64 = 12.34;
 /// Largest ratio of the scatters of means over cells and over cells of half the side: correlated error does not grow with
 /// the side, what grows faster is the scene.
@@ -127,7 +129,8 @@ impl Scales {
         };
         let of_middle = ratio(middle, 8.0, 0.5, GROWTH);
         let smooth = ratio(coarse, 16.0, 0.5 * of_middle.min(0.5), GROWTH * of_middle);
-        let of_tiles = (1.0 - white * white / 16.0).max(0.0).sqrt();
+        // What of the scatter of tiles is not white: W^2 / 16 is known to a tenth.
+        let of_tiles = (1.0 - 1.1 * white * white / 16.0).max(0.0).sqrt();
         let smooth = (smooth * of_tiles).max(white / 16.0);
         Some(Errors { white, smooth, ..found })
     }
@@ -211,7 +214,8 @@ fn ray_of(steep: &[Bend], numbers: &mut Vec<f32>, flat: impl Fn(&Bend) -> f64) -
     for _ in 0..8 {
         let ray: f64 = (low + high) / 2.0;
         let ratio = |bend: &Bend| f64::from(bend.square) / (flat(bend) + ray * ray * f64::from(bend.slope));
-        let is_larger = median(numbers, steep.iter().step_by(every).map(|bend| ratio(bend) as f32)) < MEDIAN_OF_SQUARE;
+        let is_larger =
+            quantile(numbers, 0.25, steep.iter().step_by(every).map(|bend| ratio(bend) as f32)) < QUARTILE_OF_SQUARE;
         (low, high) = if is_larger { (low, ray) } else { (ray, high) };
     }
     low
@@ -219,8 +223,13 @@ fn ray_of(steep: &[Bend], numbers: &mut Vec<f32>, flat: impl Fn(&Bend) -> f64) -
 
 /// The median of numbers.
 fn median(memory: &mut Vec<f32>, numbers: impl Iterator<Item = f32>) -> f64 {
+    quantile(memory, 0.5, numbers)
+}
+
+/// The number that a share of them lies below.
+fn quantile(memory: &mut Vec<f32>, share: f64, numbers: impl Iterator<Item = f32>) -> f64 {
     memory.clear();
     memory.extend(numbers);
-    let middle = memory.len() / 2;
-    (*memory.select_nth_unstable_by(middle, f32::total_cmp).1).into()
+    let at = (memory.len() as f64 * share) as usize;
+    (*memory.select_nth_unstable_by(at, f32::total_cmp).1).into()
 }

@@ -287,7 +287,10 @@ impl Runner {
         let noise = stated.unwrap_or_else(|| {
             model(errors.times(errors.white, space)).expect("an estimate is of the map's own kind").of_scatter()
         });
-        noise.with_ray(ray).with_smooth(errors.times(errors.smooth, space), errors.smooth * errors.ray)
+        noise.with_ray(ray).with_smooth(
+            errors.times(errors.smooth, space),
+            if params.ray > 0.0 { 0.0 } else { errors.smooth * errors.ray },
+        )
     }
 
     /// Regions of cells on one plane.
