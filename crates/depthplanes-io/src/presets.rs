@@ -24,8 +24,10 @@ pub struct SensorPreset {
     pub camera: Option<(usize, usize, Intrinsics)>,
     /// The value for "missing" beside the encoding's own.
     pub missing: Option<f64>,
-    /// How far off a pixel is, where that was published or measured.
+    /// How far off a pixel is by itself, where that was published or measured.
     pub noise: Option<PresetNoise>,
+    /// The part of the error that neighbouring pixels share over tens of pixels, where that was measured.
+    pub smooth_noise: Option<PresetNoise>,
 }
 
 /// What is known of the error of a preset's sensor.
@@ -87,7 +89,7 @@ impl fmt::Display for PresetNoise {
 }
 
 const fn preset(name: &'static str, encoding: &'static str, about: &'static str) -> SensorPreset {
-    SensorPreset { name, about, encoding, camera: None, missing: None, noise: None }
+    SensorPreset { name, about, encoding, camera: None, missing: None, noise: None, smooth_noise: None }
 }
 
 impl SensorPreset {
@@ -98,6 +100,11 @@ impl SensorPreset {
 
     const fn noise(mut self, noise: PresetNoise) -> Self {
         self.noise = Some(noise);
+        self
+    }
+
+    const fn smooth_noise(mut self, noise: PresetNoise) -> Self {
+        self.smooth_noise = Some(noise);
         self
     }
 

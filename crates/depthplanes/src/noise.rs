@@ -90,6 +90,15 @@ impl SensorNoise {
             SensorNoise::Value { .. } => None,
         }
     }
+
+    /// The same, its standard deviations so many times as large.
+    pub(crate) fn times(self, factor: f64) -> Self {
+        match self {
+            SensorNoise::Depth { base, growth } => SensorNoise::Depth { base: factor * base, growth: factor * growth },
+            SensorNoise::Value { sigma } => SensorNoise::Value { sigma: factor * sigma },
+            SensorNoise::Table(table) => SensorNoise::Table(table.times(factor)),
+        }
+    }
 }
 
 /// Variance of one pixel's q: the sensor's own error and the rounding of its values.
@@ -145,7 +154,7 @@ impl NoiseModel {
         NoiseModel { ray, ..self }
     }
 
-    /// The same with a smooth part, of the same kind as the noise.
+    /// The same with a smooth part, of a kind that suits the map as well.
     pub(crate) fn with_smooth(self, smooth: SensorNoise, smooth_ray: f64) -> Self {
         NoiseModel { smooth, smooth_ray, ..self }
     }

@@ -131,6 +131,9 @@ impl Scales {
 }
 
 impl Errors {
+    /// Of a map that shows too little.
+    pub(crate) const NONE: Errors = Errors { constant: 0.0, square: 0.0, ray: 0.0, white: 4.0, smooth: 0.25 };
+
     /// Variance of the mean over a tile.
     pub(crate) fn variance(&self, q: f64, slope: f64) -> f64 {
         let sigma = self.constant + self.square * q * q;
