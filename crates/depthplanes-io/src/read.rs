@@ -125,7 +125,7 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
     }
     let meaning = (encoding.apply)(&mut image, &Given { scale: options.scale, stereo: options.stereo })?;
     let intrinsics = camera(options, preset, &mut image)?;
-    let of_preset = |part: fn(&SensorPreset) -> Option<PresetNoise>| part(preset?)?.of(intrinsics.as_ref());
+    let of_preset = |part: fn(&SensorPreset) -> Option<PresetNoise>| part(preset?)?.of();
     let missing = missing(options, &image)?.or(preset.and_then(|preset| preset.missing)).or(encoding.missing);
     let mut frame = Frame {
         width: image.width,

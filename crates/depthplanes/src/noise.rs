@@ -6,14 +6,11 @@
 //! flight by a constant in depth; both parts add. [`Estimator`] finds it out from frames.
 
 mod estimate;
-mod ray;
 pub(crate) mod scales;
 mod steps;
 mod table;
 
-pub(crate) use estimate::{Blocks, VALID};
 pub use estimate::{Estimate, Estimator};
-pub(crate) use ray::{Slants, Tiled};
 pub(crate) use steps::Steps;
 pub use table::{MAX_ROWS, NoiseTable};
 

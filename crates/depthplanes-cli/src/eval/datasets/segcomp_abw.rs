@@ -20,7 +20,7 @@ const CAMERA: [f64; 4] = [1586.0728, 2301.0744, 255.0, 255.0];
 
 fn items(folder: &Path) -> Outcome<Vec<Item>> {
     let preset = by_name("structured-light")?;
-    let of = |noise: Option<PresetNoise>| noise.and_then(|noise| noise.of(None));
+    let of = |noise: Option<PresetNoise>| noise.and_then(|noise| noise.of());
     let (noise, smooth_noise) = (of(preset.noise), of(preset.smooth_noise));
     let [fx, fy, cx, cy] = CAMERA;
     let camera = Intrinsics::new(fx, fy, cx, cy)?;
