@@ -109,7 +109,8 @@ impl Scales {
     #[inline(always)]
     pub(crate) fn look_at(&mut self, cells: Cells, cell: impl Fn(usize) -> Cell) {
         let Cells { level, columns, rows, usual } = cells;
-        let least = WHOLE * usual * (1 << (2 * level)) as f32;
+        // A map without a valid pixel has no usual tile.
+        let least = (WHOLE * usual * (1 << (2 * level)) as f32).max(1.0);
         let stride = (columns * rows).div_ceil(SAMPLE).max(1);
         // Rows in turn begin at other columns, so that no column is left out.
         for row in 1..rows.saturating_sub(1) {
