@@ -69,8 +69,9 @@ pub(crate) fn frame(input: &Input, options: &ReadOptions) -> Outcome<Frame> {
         Input::Standard => Ok(depthplanes_io::decode(&standard_input()?, "-", options)?),
         Input::Scene(spec) => {
             let mut frame = scene(spec)?;
-            frame.sensor.noise = options.noise;
-            if *options != (ReadOptions { noise: options.noise, ..ReadOptions::default() }) {
+            let ReadOptions { noise, smooth_noise, .. } = *options;
+            (frame.sensor.noise, frame.sensor.smooth_noise) = (noise, smooth_noise);
+            if *options != (ReadOptions { noise, smooth_noise, ..ReadOptions::default() }) {
                 frame
                     .warnings
                     .push("a made-up scene knows its own unit and camera: flags on reading are not used".into());

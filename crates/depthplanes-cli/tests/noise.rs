@@ -2,8 +2,12 @@
 
 mod support;
 
+use depthplanes::metrics::{Contingency, SurfaceCounts, partial};
+use depthplanes_io::formats::DecodeOptions;
+use depthplanes_io::read_labels;
 use serde_json::Value;
-use support::Bench;
+use std::path::Path;
+use support::{Bench, data};
 
 fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
@@ -15,11 +19,17 @@ fn the_flags_it_prints_are_the_estimate_and_detect_takes_them() {
     let out = bench.run(&["noise", "scene:room:sensor=tof_white"]).ok();
     let words: Vec<&str> =
         out.lines().last().unwrap().split_whitespace().skip_while(|word| *word != "detect").collect();
-    let given: Vec<f64> = words.iter().filter_map(|word| word.parse().ok()).collect();
-    assert!((given[0] - 0.001).abs() < 0.0004 && (given[1] - 0.0013).abs() < 0.0002, "{out}");
+    let of = |flag: &str| {
+        let at = words.iter().position(|word| *word == flag).unwrap_or_else(|| panic!("{flag}: {out}"));
+        words[at + 1].parse::<f64>().unwrap()
+    };
+    let sigma_m = of("--noise") + 9.0 * of("--noise-growth");
+    assert!((sigma_m / 0.0127 - 1.0).abs() < 0.2, "{sigma_m} m at 3 m: {out}");
+    assert!(of("--smooth-noise") + 9.0 * of("--smooth-noise-growth") < 0.35 * sigma_m, "{out}");
     let found = bench.run(&[&words[..], &["scene:room:sensor=tof_white", "--json"]].concat()).ok();
     let record = json(&found);
-    assert_eq!(record["parameters"]["noise"], given[0]);
+    assert_eq!(record["parameters"]["noise"], of("--noise"));
+    assert_eq!(record["parameters"]["smooth-noise-growth"], of("--smooth-noise-growth"));
     assert_eq!(record["planes"][0]["metric"]["covariance_from"], "noise");
 }
 
@@ -69,7 +79,7 @@ fn maps_that_tell_nothing_are_failures_and_the_others_are_done() {
     let said = bench.run(&["noise", "empty.pgm"]).fails(2);
     assert!(said.contains("empty.pgm: the noise cannot be told from 0 blocks"), "{said}");
     let ran = bench.run(&["noise", "empty.pgm", "scene:room:size=320x240", "map.pgm"]);
-    assert!(ran.err.contains("2 of 3 inputs have no estimate") && ran.out.contains("scene:room"), "{ran:?}");
+    assert!(ran.err.contains("1 of 3 inputs have no estimate") && ran.out.contains("scene:room"), "{ran:?}");
     ran.fails(2);
     bench.run(&["noise", "scene:room:sensor=disparity", "scene:room"]).fails(2);
 }
@@ -99,4 +109,40 @@ fn detect_takes_the_noise_as_a_table() {
     assert_eq!(ngaf["planes"][0]["metric"]["covariance_from"], "noise");
     let ngaf = json(&bench.run(&["detect", scene, "--method", "ngaf", "--theta", "30", "--json"]).ok());
     assert_eq!(ngaf["planes"][0]["metric"]["covariance_from"], "residuals");
+}
+
+/// What becomes of a recorded frame's labelled surfaces.
+fn surfaces(bench: &Bench, frame: &Path, flags: &[&str], coplanar: &[Vec<u16>]) -> SurfaceCounts {
+    let words = [&["detect", frame.to_str().unwrap(), "--labels", "found.png"], flags].concat();
+    bench.run(&words).ok();
+    let labels = |path: &Path| read_labels(path, &DecodeOptions::default()).unwrap().labels;
+    let truth = labels(Path::new(&frame.to_str().unwrap().replace(".depth.", ".labels.")));
+    let found = labels(&bench.folder.join("found.png"));
+    partial(&Contingency::new(&truth, &found).unwrap(), coplanar).of_at_least(0)
+}
+
+#[test]
+fn the_flags_it_prints_find_the_surfaces_of_recorded_frames_as_no_flags_do() {
+    let Some(folder) = data().map(|data| data.join("gt_real")) else { return };
+    let bench = Bench::new("noise_recorded");
+    let (mut without, mut with) = (SurfaceCounts::default(), SurfaceCounts::default());
+    for entry in std::fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        let Some(name) = path.to_str().unwrap().strip_suffix(".json") else { continue };
+        let about = json(&std::fs::read_to_string(&path).unwrap());
+        let reading: Vec<&str> = about["flags"].as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect();
+        let coplanar: Vec<Vec<u16>> = serde_json::from_value(about["coplanar"].clone()).unwrap();
+        let depth = format!("{name}.depth.png");
+        let told = json(&bench.run(&[&["noise", "--json", &depth], &reading[..]].concat()).ok());
+        let flags = told["all"]["flags"].as_str().unwrap().split_whitespace();
+        let stated: Vec<&str> = reading.iter().copied().chain(flags).collect();
+        let plain = surfaces(&bench, Path::new(&depth), &reading, &coplanar);
+        let told = surfaces(&bench, Path::new(&depth), &stated, &coplanar);
+        assert!(told.correct + 1 >= plain.correct, "{name}: {told:?} with the flags, {plain:?} without");
+        without += plain;
+        with += told;
+    }
+    let [without, with] = [without, with].map(|counts| 100.0 * counts.correct_share().unwrap());
+    println!("{with:.1} % of the surfaces are correct with the flags, {without:.1} % without");
+    assert!(with >= without - 1.0, "{with} % with the flags, {without} % without");
 }

@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::formats::{self, DecodeOptions, Image};
 use crate::frame::{Frame, Pixels};
 use crate::inspect;
-use crate::presets::{self, SensorPreset};
+use crate::presets::{self, PresetNoise, SensorPreset};
 
 /// What the user says of a map beside its bytes. The default says nothing.
 ///
@@ -51,8 +51,10 @@ pub struct ReadOptions {
     pub camera_size: Option<(usize, usize)>,
     /// The stereo rig, for disparities; ignored for depth.
     pub stereo: Option<Stereo>,
-    /// How far off a pixel is.
+    /// How far off a pixel is by itself ([`Sensor::noise`]).
     pub noise: Option<SensorNoise>,
+    /// The part of the error that neighbouring pixels share ([`Sensor::smooth_noise`]).
+    pub smooth_noise: Option<SensorNoise>,
 }
 
 impl ReadOptions {
@@ -123,6 +125,7 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
     }
     let meaning = (encoding.apply)(&mut image, &Given { scale: options.scale, stereo: options.stereo })?;
     let intrinsics = camera(options, preset, &mut image)?;
+    let of_preset = |part: fn(&SensorPreset) -> Option<PresetNoise>| part(preset?)?.of();
     let missing = missing(options, &image)?.or(preset.and_then(|preset| preset.missing)).or(encoding.missing);
     let mut frame = Frame {
         width: image.width,
@@ -130,7 +133,12 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
         missing: missing.filter(|value| storable(&image.pixels, *value)),
         pixels: image.pixels,
         valid_range: options.valid_range.or(meaning.valid_range),
-        sensor: Sensor { measure: meaning.measure, intrinsics, noise: noise(options, preset, &meaning, intrinsics)? },
+        sensor: Sensor {
+            measure: meaning.measure,
+            intrinsics,
+            noise: noise(options.noise, of_preset(|preset| preset.noise), &meaning)?,
+            smooth_noise: noise(options.smooth_noise, of_preset(|preset| preset.smooth_noise), &meaning)?,
+        },
         format: format.name,
         encoding: encoding.name,
         warnings: image.warnings,
@@ -173,16 +181,9 @@ fn swap_bytes(image: &mut Image) -> Result<()> {
     Ok(())
 }
 
-/// The user's noise, which must suit the map, or the preset's.
-fn noise(
-    options: &ReadOptions,
-    preset: Option<&SensorPreset>,
-    meaning: &Meaning,
-    camera: Option<Intrinsics>,
-) -> Result<Option<SensorNoise>> {
-    let Some(noise) = options.noise else {
-        return Ok(preset.and_then(|preset| preset.noise?.of(camera.as_ref())));
-    };
+/// A part of the user's noise, which must suit the map, or the preset's.
+fn noise(given: Option<SensorNoise>, of_preset: Option<SensorNoise>, meaning: &Meaning) -> Result<Option<SensorNoise>> {
+    let Some(noise) = given else { return Ok(of_preset) };
     if NoiseModel::new(meaning.measure, noise, 0.0).is_none() {
         let accepted = "maps in depth, or in disparity of a known rig (--focal, --baseline)";
         return Err(Error::parameter("--noise-table", "for depth and the map is not", accepted));

@@ -53,7 +53,17 @@ fn what_is_no_table_is_refused_with_the_line() {
 fn a_stated_noise_goes_before_the_presets_and_must_suit_the_map() {
     let table = SensorNoise::Table(NoiseTable::new(&[[1.0, 0.002]]).unwrap());
     let stated = ReadOptions { preset: Some("kinect1".into()), noise: Some(table), ..Default::default() };
-    assert_eq!(decode(MAP, "x", &stated).unwrap().sensor.noise, Some(table));
+    let sensor = decode(MAP, "x", &stated).unwrap().sensor;
+    assert_eq!(sensor.noise, Some(table));
+    // Each part by itself.
+    let of_preset = presets::by_name("kinect1").unwrap().smooth_noise.unwrap().of();
+    assert_eq!(sensor.smooth_noise, of_preset);
+    let smooth = ReadOptions { smooth_noise: Some(table), noise: None, ..stated };
+    let sensor = decode(MAP, "x", &smooth).unwrap().sensor;
+    assert_eq!(
+        (sensor.noise, sensor.smooth_noise),
+        (presets::by_name("kinect1").unwrap().noise.unwrap().of(), Some(table))
+    );
     let disparity = ReadOptions { encoding: Some("kitti".into()), noise: Some(table), ..Default::default() };
     let error = decode(MAP, "x", &disparity).unwrap_err();
     assert!(matches!(error.kind(), Error::Parameter { option: "--noise-table", .. }), "{error}");
@@ -69,21 +79,11 @@ fn every_presets_noise_suits_its_encoding() {
         let options = ReadOptions { preset: Some(preset.name.into()), intrinsics: Some(camera), ..Default::default() };
         let sensor = decode(MAP, preset.name, &options).unwrap().sensor;
         assert_eq!(sensor.noise.is_some(), preset.noise.is_some(), "{}", preset.name);
-        if let Some(noise) = sensor.noise {
+        assert_eq!(sensor.smooth_noise.is_some(), preset.smooth_noise.is_some(), "{}", preset.name);
+        for noise in sensor.noise.into_iter().chain(sensor.smooth_noise) {
             let model = NoiseModel::new(sensor.measure, noise, 1.0).unwrap_or_else(|| panic!("{}", preset.name));
             let at_2_m = model.depth_sigma_m(2.0).unwrap();
             assert!((1e-4..0.02).contains(&at_2_m), "{}: {at_2_m} m at 2 m", preset.name);
         }
     }
-}
-
-#[test]
-fn the_noise_of_a_stereo_camera_takes_its_focal_length() {
-    let noise = presets::by_name("realsense-d4xx").unwrap().noise.unwrap();
-    assert_eq!(noise.of(None), None);
-    let camera = Intrinsics::new(-400.0, 400.0, 424.0, 240.0).unwrap();
-    let model = NoiseModel::new(Measure::Depth { metres: 0.001 }, noise.of(Some(&camera)).unwrap(), 0.0).unwrap();
-    // 0.08 px at 400 px and 5 cm: 4 mm at 1 m.
-    assert!((model.depth_sigma_m(1.0).unwrap() - 0.004).abs() < 1e-12);
-    assert!((model.depth_sigma_m(2.0).unwrap() - 0.016).abs() < 1e-12);
 }

@@ -167,8 +167,11 @@ pub struct Sensor {
     pub measure: Measure,
     /// The camera, if known.
     pub intrinsics: Option<Intrinsics>,
-    /// How far off a pixel is, if known; methods that need it estimate it otherwise.
+    /// How far off a pixel is by itself, if known; methods that need it estimate it from the map otherwise.
     pub noise: Option<SensorNoise>,
+    /// The part of the error that neighbouring pixels share over tens of pixels, beside `noise`, if known; methods that
+    /// need it (`planar`) estimate it from the map otherwise.
+    pub smooth_noise: Option<SensorNoise>,
 }
 
 impl Sensor {
@@ -186,7 +189,7 @@ impl Sensor {
 impl Default for Sensor {
     /// Depth in millimetres, camera unknown.
     fn default() -> Self {
-        Sensor { measure: Measure::Depth { metres: 0.001 }, intrinsics: None, noise: None }
+        Sensor { measure: Measure::Depth { metres: 0.001 }, intrinsics: None, noise: None, smooth_noise: None }
     }
 }
 

@@ -176,7 +176,7 @@ impl fmt::Display for Error {
             }
             Error::TooFewBlocks { found, least } => write!(
                 f,
-                "the noise cannot be told from {found} blocks of 12 x 12 pixels, four fifths of them valid; at least {least} are needed"
+                "the noise cannot be told from {found} blocks of 4 x 4 pixels that have their valid pixels and others beside them; at least {least} are needed"
             ),
             Error::MixedMeasures => {
                 write!(

@@ -7,16 +7,13 @@
 
 mod enlarged;
 mod estimate;
-mod ray;
 mod rounding;
 pub(crate) mod scales;
 mod steps;
 mod table;
 
 pub use enlarged::{Enlargement, EnlargementFinder};
-pub(crate) use estimate::{Blocks, VALID};
 pub use estimate::{Estimate, Estimator};
-pub(crate) use ray::{Slants, Tiled};
 pub use rounding::{Rounding, RoundingFinder};
 pub(crate) use steps::Steps;
 pub use table::{MAX_ROWS, NoiseTable};
@@ -94,6 +91,15 @@ impl SensorNoise {
             SensorNoise::Value { .. } => None,
         }
     }
+
+    /// The same, its standard deviations so many times as large.
+    pub(crate) fn times(self, factor: f64) -> Self {
+        match self {
+            SensorNoise::Depth { base, growth } => SensorNoise::Depth { base: factor * base, growth: factor * growth },
+            SensorNoise::Value { sigma } => SensorNoise::Value { sigma: factor * sigma },
+            SensorNoise::Table(table) => SensorNoise::Table(table.times(factor)),
+        }
+    }
 }
 
 /// Variance of one pixel's q: the sensor's own error and the rounding of its values.
@@ -163,7 +169,7 @@ impl NoiseModel {
         NoiseModel { rounding, ..self }
     }
 
-    /// The same with a smooth part, of the same kind as the noise.
+    /// The same with a smooth part, of a kind that suits the map as well.
     pub(crate) fn with_smooth(self, smooth: SensorNoise, smooth_ray: f64) -> Self {
         NoiseModel { smooth, smooth_ray, ..self }
     }

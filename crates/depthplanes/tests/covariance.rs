@@ -69,7 +69,12 @@ impl Case {
 
     /// What is found in a map of noisy values.
     fn detect(&self, values: &[f64], width: usize, height: usize, intrinsics: Intrinsics) -> Detection {
-        let sensor = Sensor { measure: self.measure, intrinsics: Some(intrinsics), noise: Some(self.noise) };
+        let sensor = Sensor {
+            measure: self.measure,
+            intrinsics: Some(intrinsics),
+            noise: Some(self.noise),
+            ..Sensor::default()
+        };
         let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
         if self.is_whole {
             let whole: Vec<u16> = values.iter().map(|value| value.round() as u16).collect();
@@ -205,7 +210,7 @@ fn residuals_speak_where_the_noise_is_not_known_or_too_small() {
         // A seventh of the truth.
         let little = SensorNoise::Depth { base: 0.00015, growth: 0.00019 };
         for (noise, errors) in [None, Some(little)].into_iter().zip(&mut errors) {
-            let sensor = Sensor { measure: case.measure, intrinsics: Some(camera()), noise };
+            let sensor = Sensor { measure: case.measure, intrinsics: Some(camera()), noise, ..Sensor::default() };
             let mut detector = Detector::new(Ngaf { theta: 1e6, ..Ngaf::default() }).unwrap().sensor(sensor);
             let found = detector.detect(DepthView::new(&values, WIDTH, HEIGHT).unwrap()).unwrap();
             let from = if noise.is_some() { CovarianceSource::Noise } else { CovarianceSource::Residuals };

@@ -149,38 +149,3 @@ fn each_reason_is_told() {
         assert!(right == "plane" || !why.suggestions.is_empty(), "{given:?} {at:?}");
     }
 }
-
-/// A number of a finding.
-fn number(why: &Explanation, name: &str) -> f64 {
-    let mut all = why.findings.iter().flat_map(|finding| &finding.quantities);
-    all.find(|quantity| quantity.name == name).unwrap_or_else(|| panic!("no {name}: {why:?}")).value
-}
-
-#[test]
-fn a_piece_that_was_cut_off_is_told_by_the_plane_that_it_went_to() {
-    let frame = scene("room:seed=7,sensor=tof_white,size=160x120");
-    let mut detector = detector_of("planar", &[], &frame);
-    let planes = detector.detect(frame.view()).unwrap().planes.clone();
-    let (mut strays, mut held) = (0, 0);
-    for [u, v] in (0..30).flat_map(|row| (0..40).map(move |column| [4 * column, 4 * row + 2])) {
-        let why = detector.explain(frame.view(), [u, v]).unwrap();
-        let Verdict::Plane { label, off, .. } = why.verdict else { continue };
-        let says = |part: &str| why.findings.iter().any(|finding| finding.outcome.contains(part));
-        if !says("cut off from the rest of its own plane") {
-            continue;
-        }
-        strays += 1;
-        assert!(says(&format!("goes to plane {label} around it")), "{why:?}");
-        // Of a large plane the record tells the same distance, where q is inverse depth.
-        let plane = &planes[usize::from(label) - 1];
-        if plane.pixel_count > 1000 {
-            let [a, b, c] = plane.metric.unwrap().plane.inverse_depth(&frame.sensor.intrinsics.unwrap()).unwrap();
-            let (depth, noise) = (number(&why, "depth"), 1e-3 * number(&why, "of depth"));
-            let sigma = (noise / depth.powi(2)).hypot(Planar::default().ray * a.hypot(b));
-            let right = (1.0 / depth - (a * u as f64 + b * v as f64 + c)).abs() / sigma;
-            assert!((off.unwrap() - right).abs() < 0.3, "{u},{v}: {off:?}, {right} by the record");
-            held += 1;
-        }
-    }
-    assert!(strays > held && held >= 3, "{strays}, {held} of large planes");
-}

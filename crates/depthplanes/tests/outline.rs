@@ -341,7 +341,7 @@ fn detect(
         if holds(u, v) && q > 0.0 { (1.0 / q) as f32 } else { 0.0 }
     };
     let map: Vec<f32> = (0..width * height).map(value).collect();
-    let sensor = Sensor { measure: Measure::Depth { metres: 1.0 }, intrinsics: Some(camera), noise: None };
+    let sensor = Sensor { measure: Measure::Depth { metres: 1.0 }, intrinsics: Some(camera), ..Sensor::default() };
     let mut detector = Detector::new(Ngaf { theta: 1e6, min: 3, ..Ngaf::default() }).unwrap().sensor(sensor);
     (detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap().clone(), sensor)
 }
@@ -440,7 +440,7 @@ fn a_plane_that_reaches_infinity_has_no_area_and_no_outline_in_metres() {
     let map: Vec<f32> = (0..width * height).map(|at| 0.2 + (at / width) as f32).collect();
     let camera = Intrinsics::new(50.0, 50.0, 6.0, -2.0).unwrap();
     let measure = Measure::InverseDepth { slope: 0.1, offset: 0.0 };
-    let sensor = Sensor { measure, intrinsics: Some(camera), noise: None };
+    let sensor = Sensor { measure, intrinsics: Some(camera), ..Sensor::default() };
     let mut detector = Detector::new(Ngaf::default()).unwrap().sensor(sensor);
     let found = detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap();
     assert_eq!(found.planes[0].metric.unwrap().area_m2, None);

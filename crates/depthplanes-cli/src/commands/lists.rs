@@ -51,11 +51,12 @@ pub(super) fn encodings(out: &mut dyn Write) -> Outcome {
 }
 
 pub(super) fn presets(out: &mut dyn Write) -> Outcome {
-    let mut rows = vec![row(["preset", "encoding", "camera for", "noise", "about"])];
+    let mut rows = vec![row(["preset", "encoding", "camera for", "noise", "smooth noise", "about"])];
     rows.extend(SENSOR_PRESETS.iter().map(|preset| {
         let size = preset.camera.map_or("-".to_string(), |(width, height, _)| format!("{width} x {height}"));
-        let noise = preset.noise.map_or("estimated".to_string(), |noise| noise.to_string());
-        row([preset.name, preset.encoding, &size, &noise, preset.about])
+        let [noise, smooth] = [preset.noise, preset.smooth_noise]
+            .map(|noise| noise.map_or("estimated".to_string(), |noise| noise.to_string()));
+        row([preset.name, preset.encoding, &size, &noise, &smooth, preset.about])
     }));
     print(&rows, out)
 }

@@ -68,8 +68,8 @@ fn record(found: &[(String, Estimate)], all: &Estimate) -> String {
 }
 
 fn estimate_record(estimate: &Estimate) -> Value {
-    let model = estimate.model();
-    let at = |z: f64| json!({"range_m": z, "sigma_m": model.depth_sigma_m(z)});
+    let (model, smooth) = (estimate.model(), estimate.smooth_model());
+    let at = |z: f64| json!({"range_m": z, "sigma_m": model.depth_sigma_m(z), "smooth_m": smooth.depth_sigma_m(z)});
     let mut record = json!({
         "space": space(estimate.measure),
         "blocks": estimate.blocks,
@@ -78,13 +78,15 @@ fn estimate_record(estimate: &Estimate) -> Value {
         "ray_px": estimate.ray,
         "depth": RANGES_M.map(at),
     });
-    match estimate.noise {
-        SensorNoise::Depth { base, growth } => {
-            record["base_m"] = json!(base);
-            record["growth_per_m"] = json!(growth);
+    for (part, noise) in [("", estimate.noise), ("smooth_", estimate.smooth)] {
+        match noise {
+            SensorNoise::Depth { base, growth } => {
+                record[format!("{part}base_m")] = json!(base);
+                record[format!("{part}growth_per_m")] = json!(growth);
+            }
+            SensorNoise::Value { sigma } => record[format!("{part}sigma")] = json!(sigma),
+            SensorNoise::Table(_) => (),
         }
-        SensorNoise::Value { sigma } => record["sigma"] = json!(sigma),
-        SensorNoise::Table(_) => (),
     }
     record
 }
@@ -94,7 +96,7 @@ fn space(measure: Measure) -> &'static str {
 }
 
 fn readable(found: &[(String, Estimate)], all: &Estimate) -> String {
-    let mut rows = vec![row(["input", "blocks", "range", "noise", "at 1 m", "at 2 m", "at 3 m", "at 4 m", "ray"])];
+    let mut rows = vec![row(["input", "blocks", "range", "at 1 m", "at 2 m", "at 3 m", "at 4 m", "ray"])];
     rows.extend(found.iter().map(|(name, estimate)| cells(name, estimate)));
     if found.len() > 1 {
         rows.push(cells("all together", all));
@@ -112,7 +114,8 @@ fn readable(found: &[(String, Estimate)], all: &Estimate) -> String {
         (step, _) => format!(" Rounding to steps of {} map units comes on top.", significant(step)),
     };
     let mut text = aligned(&columns, &rows);
-    text += &format!("\nStandard deviation of {what}.{steps}\n");
+    text += &format!("\nStandard deviations of {what}: of single pixels, and of what neighbours share.{steps}\n");
+    text += &format!("All together: {} and {}.\n", formula(all.noise), formula(all.smooth));
     text += &match flags(all) {
         Some(flags) => format!("To use it: depthplanes detect {flags}\n"),
         None => "There is no noise beside rounding, and nothing to tell `detect`.\n".to_string(),
@@ -121,10 +124,12 @@ fn readable(found: &[(String, Estimate)], all: &Estimate) -> String {
 }
 
 fn cells(name: &str, estimate: &Estimate) -> Vec<String> {
-    let model = estimate.model();
-    let mut cells = row([name, &estimate.blocks.to_string(), &range(estimate), &formula(estimate.noise)]);
-    let sigma = |z: f64| model.depth_sigma_m(z).map_or("-".to_string(), |sigma| format!("{:.1} mm", 1e3 * sigma));
-    cells.extend(RANGES_M.map(sigma));
+    let (model, smooth) = (estimate.model(), estimate.smooth_model());
+    let mut cells = row([name, &estimate.blocks.to_string(), &range(estimate)]);
+    cells.extend(RANGES_M.map(|z| match (model.depth_sigma_m(z), smooth.depth_sigma_m(z)) {
+        (Some(white), Some(smooth)) => format!("{:.1} and {:.1} mm", 1e3 * white, 1e3 * smooth),
+        _ => "-".to_string(),
+    }));
     cells.push(estimate.ray.map_or("-".to_string(), |ray| format!("{ray:.2} px")));
     cells
 }
@@ -138,24 +143,28 @@ fn range(estimate: &Estimate) -> String {
     }
 }
 
+/// A part of the noise as a formula.
 fn formula(noise: SensorNoise) -> String {
     match noise {
         SensorNoise::Depth { base, growth } => format!("{:.2} + {:.2} z^2 mm", 1e3 * base, 1e3 * growth),
-        SensorNoise::Value { sigma } => format!("{} units", significant(sigma)),
+        SensorNoise::Value { sigma } => format!("{} map units", significant(sigma)),
         SensorNoise::Table(_) => "table".into(),
     }
 }
 
-/// The flags of `detect` for this noise and ray; `None` if both are what it would estimate or expect without them.
+/// The flags of `detect` for this noise and ray; `None` if all are what it would expect without them.
 fn flags(estimate: &Estimate) -> Option<String> {
     let flag = |name: &str, value: f64| format!("--{name} {}", significant(value));
-    let mut flags = match estimate.noise {
-        SensorNoise::Depth { base, growth } if base + growth > 1e-9 => {
-            vec![flag("noise", base), flag("noise-growth", growth)]
+    let mut flags = Vec::new();
+    for (part, noise) in [("noise", estimate.noise), ("smooth-noise", estimate.smooth)] {
+        match noise {
+            SensorNoise::Depth { base, growth } if base + growth > 1e-9 => {
+                flags.extend([flag(part, base), flag(&format!("{part}-growth"), growth)]);
+            }
+            SensorNoise::Value { sigma } if sigma > 1e-9 => flags.push(flag(part, sigma)),
+            _ => (),
         }
-        SensorNoise::Value { sigma } if sigma > 1e-9 => vec![flag("noise", sigma)],
-        _ => Vec::new(),
-    };
+    }
     flags.extend(estimate.ray.map(|ray| format!("--ray {ray:.2}")));
     (!flags.is_empty()).then(|| flags.join(" "))
 }

@@ -26,7 +26,7 @@ pub fn frame() -> Frame {
         sensor: Sensor {
             measure: Measure::Depth { metres: 0.001 },
             intrinsics: Some(Intrinsics { fx: 40.0, fy: 40.0, cx: 23.5, cy: 15.5 }),
-            noise: None,
+            ..Sensor::default()
         },
         format: "png",
         encoding: "mm",

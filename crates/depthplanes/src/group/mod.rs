@@ -266,11 +266,6 @@ impl Groups {
         (0..self.strips.len()).for_each(|strip| self.each_run_of(strip, &mut visit));
     }
 
-    /// Strips of rows that the map is cut into, by its size alone, and the most pixels of one.
-    pub(crate) fn strips(&self) -> [usize; 2] {
-        [self.strips.len(), self.strips[0].rows.len() * self.width]
-    }
-
     /// Calls `visit` for each run of a strip in raster order.
     pub(crate) fn each_run_of(&self, strip: usize, mut visit: impl FnMut(Run)) {
         let strip = &self.strips[strip];

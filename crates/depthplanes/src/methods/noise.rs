@@ -1,4 +1,5 @@
-//! What the parameters of `planar` and `mdl` say of a map's noise.
+//! What the parameters of `planar` and `mdl` say of a map's noise: its white part, which averages out, and of `planar`
+//! its smooth part as well, which does not within a surface.
 
 use super::{Param, ParamKind};
 use crate::noise::{SensorNoise, Space};
@@ -25,7 +26,40 @@ pub(super) const NOISE_GROWTH: Param = Param {
     source: None,
 };
 
-/// The noise that [`NOISE`] and [`NOISE_GROWTH`] state; none if they are 0.
+pub(super) const SMOOTH_NOISE: Param = Param {
+    name: "smooth-noise",
+    default: 0.0,
+    min: 0.0,
+    max: f64::MAX,
+    kind: ParamKind::Real,
+    unit: "m or map units",
+    meaning: "The part of the error that neighbouring pixels share over tens of pixels: of depth at range 0 in metres, of disparity in map units, one standard deviation; with `smooth-noise-growth` 0 as well it is the preset's, or else estimated from the map.",
+    source: None,
+};
+
+pub(super) const SMOOTH_NOISE_GROWTH: Param = Param {
+    name: "smooth-noise-growth",
+    default: 0.0,
+    min: 0.0,
+    max: f64::MAX,
+    kind: ParamKind::Real,
+    unit: "1/m",
+    meaning: "What that part of depth grows by with the square of the range; not used for disparity.",
+    source: None,
+};
+
+pub(super) const NOISE_SCALE: Param = Param {
+    name: "noise-scale",
+    default: 1.0,
+    min: 0.01,
+    max: 100.0,
+    kind: ParamKind::Real,
+    unit: "times",
+    meaning: "What all noise is multiplied by, stated or estimated; larger joins more.",
+    source: None,
+};
+
+/// The noise that [`NOISE`] and [`NOISE_GROWTH`] state, or those of the smooth part; none if they are 0.
 pub(super) fn stated(space: Space, noise: f64, growth: f64) -> Option<SensorNoise> {
     let is_stated = noise > 0.0 || (space != Space::Value && growth > 0.0);
     is_stated.then(|| of_kind(space, noise, growth))

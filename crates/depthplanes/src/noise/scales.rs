@@ -9,11 +9,13 @@ use super::{Rounding, SensorNoise, Space, steady};
 use crate::group::reserve_to;
 
 /// Sides of the cells, pixels.
-pub(crate) const SIDES: [usize; 3] = [4, 8, 16];
+pub(super) const SIDES: [usize; 3] = [4, 8, 16];
 /// Cells that are looked at for each side, at most about: a median of 4,000 is known to 2 %.
 pub(crate) const SAMPLE: usize = 4096;
 /// Fewest second differences that tell a scale.
-const FEW: usize = 16;
+pub(super) const FEW: usize = 16;
+/// Share of its usual pixels that a cell has to have.
+const WHOLE: f32 = 0.75;
 /// Stretches of q that tell how the error grows over the range; of equal counts.
 const STRETCHES: usize = 6;
 /// Ratios of constant error to error that grows with q^2 that are tried.
@@ -41,6 +43,25 @@ pub(crate) struct Bend {
     pub(crate) slope: f32,
     /// The square of `(m[-1] - 2 m[0] + m[1]) / sqrt 6`: in the mean the variance of a cell's mean.
     pub(crate) square: f32,
+}
+
+/// Cells of one side, row by row.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cells {
+    /// Which of [`SIDES`].
+    pub(crate) level: usize,
+    pub(crate) columns: usize,
+    pub(crate) rows: usize,
+    /// Pixels that a tile usually has.
+    pub(crate) usual: f32,
+}
+
+/// A cell: its pixels, its plane `q = a du + b dv + c` about its middle, and their squared residuals about it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cell {
+    pub(crate) n: f32,
+    pub(crate) abc: [f32; 3],
+    pub(crate) squares: f32,
 }
 
 /// Squared residuals of a tile's pixels about its own plane, over its degrees of freedom.
@@ -84,6 +105,36 @@ impl Scales {
         self.tiles.clear();
         reserve_to(&mut self.tiles, 2 * SAMPLE);
         reserve_to(&mut self.numbers, 4 * SAMPLE);
+    }
+
+    /// Looks at cells that have most of their usual pixels, as have those on either side of them.
+    #[inline(always)]
+    pub(crate) fn look_at(&mut self, cells: Cells, cell: impl Fn(usize) -> Cell) {
+        let Cells { level, columns, rows, usual } = cells;
+        // A map without a valid pixel has no usual tile.
+        let least = (WHOLE * usual * (1 << (2 * level)) as f32).max(1.0);
+        let stride = (columns * rows).div_ceil(SAMPLE).max(1);
+        // Rows in turn begin at other columns, so that no column is left out.
+        for row in 1..rows.saturating_sub(1) {
+            for column in (1 + row * 7 % stride..columns.saturating_sub(1)).step_by(stride) {
+                let at = row * columns + column;
+                let Cell { n, abc: [a, b, q], squares } = cell(at);
+                if n < least {
+                    continue;
+                }
+                let slope = a * a + b * b;
+                if level == 0 {
+                    self.tiles.push(Scatter { q, slope, square: squares / (n - 3.0).max(1.0) });
+                }
+                for step in [1, columns] {
+                    let [before, behind] = [at - step, at + step].map(&cell);
+                    if before.n.min(behind.n) >= least {
+                        let off = before.abc[2] - 2.0 * q + behind.abc[2];
+                        self.bends[level].push(Bend { q, slope, square: off * off * (1.0 / 6.0) });
+                    }
+                }
+            }
+        }
     }
 
     /// The errors that explain what was seen; none if too little was.
@@ -137,6 +188,9 @@ impl Scales {
 }
 
 impl Errors {
+    /// Of a map that shows too little.
+    pub(crate) const NONE: Errors = Errors { constant: 0.0, square: 0.0, ray: 0.0, white: 4.0, smooth: 0.25 };
+
     /// Variance of the mean over a tile.
     pub(crate) fn variance(&self, q: f64, slope: f64) -> f64 {
         let sigma = self.constant + self.square * q * q;

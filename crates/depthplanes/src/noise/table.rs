@@ -54,6 +54,12 @@ impl NoiseTable {
         &self.rows[..self.count]
     }
 
+    /// The same, its standard deviations so many times as large.
+    pub(super) fn times(mut self, factor: f64) -> Self {
+        self.rows.iter_mut().for_each(|[_, sigma]| *sigma *= factor);
+        self
+    }
+
     /// Standard deviation at range `depth_m` (infinity is accepted), metres.
     pub fn sigma_m(&self, depth_m: f64) -> f64 {
         let rows = self.rows();

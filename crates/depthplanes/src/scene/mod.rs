@@ -128,6 +128,6 @@ pub fn render(scene: &Scene, camera: &Camera, sensor: SensorModel, seed: u64) ->
     let seen = cast::cast(scene, camera);
     let pixels = sensor.pixels(&sensors::Exposure { scene, camera, seen: &seen }, seed);
     let truth = Truth::new(scene, camera, seen);
-    let sensor = Sensor { measure: sensor.measure(camera), intrinsics: Some(camera.intrinsics), noise: None };
+    let sensor = Sensor { measure: sensor.measure(camera), intrinsics: Some(camera.intrinsics), ..Sensor::default() };
     Ok(SceneFrame { width: camera.width, height: camera.height, pixels, sensor, truth })
 }

@@ -92,13 +92,13 @@ impl Seen {
             Verdict::Small { pixels, .. } => vec![smaller_min(pixels).collect()],
             Verdict::Off { off, most, .. } => {
                 let times = off / most;
-                vec![self.confidences(times * confidence), self.noises(times)]
+                vec![self.confidences(times * confidence), self.noises(run, times)]
             }
             Verdict::Uneven { .. } | Verdict::Alone | Verdict::Sparse { .. } => {
                 vec![
                     smaller_min(run.params.min as usize / 2).take(3).collect(),
                     self.confidences(confidence),
-                    self.noises(1.2),
+                    self.noises(run, 1.2),
                 ]
             }
             Verdict::Dropped { parameter, value, .. } => {
@@ -106,7 +106,9 @@ impl Seen {
                 vec![smaller.to_vec()]
             }
             // Sensors bend walls a little; a ball is bent by much more.
-            Verdict::Curved => self.bow.filter(|bow| *bow < SLIGHT).map(|bow| self.noises(bow)).into_iter().collect(),
+            Verdict::Curved => {
+                self.bow.filter(|bow| *bow < SLIGHT).map(|bow| self.noises(run, bow)).into_iter().collect()
+            }
             _ => nothing(),
         }
     }
@@ -117,9 +119,10 @@ impl Seen {
     }
 
     /// The noise in use so many times, as parameters.
-    fn noises(&self, least: f64) -> Vec<Change> {
+    fn noises(&self, run: &Runner, least: f64) -> Vec<Change> {
         let Some(noise) = self.noise else { return Vec::new() };
-        let here = noise.variance(self.q).sqrt();
+        // What `noise-scale` makes of it comes on top again.
+        let here = noise.variance(self.q).sqrt() / run.params.noise_scale;
         let most = FACTORS[FACTORS.len() - 1];
         let factors = FACTORS.into_iter().map(|factor| 1.01 * factor * least).filter(|&factor| factor <= most);
         let scaled = |factor: f64| match Space::of(self.sensor.measure) {

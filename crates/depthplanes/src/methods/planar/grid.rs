@@ -169,12 +169,6 @@ impl Grid {
         self.sums.n[at]
     }
 
-    /// Squared residuals of a cell's pixels about its own plane.
-    #[inline(always)]
-    pub(super) fn squares(&self, at: usize) -> f32 {
-        self.sums.squares[at]
-    }
-
     /// q in the middle of a cell's own plane.
     pub(super) fn q(&self, at: usize) -> f64 {
         self.sums.c[at].into()

@@ -35,16 +35,17 @@ mod tiles;
 mod turns;
 
 use super::finish::{Finisher, MIN, STAGES, Wanted};
-use super::noise::{NOISE, NOISE_GROWTH, stated};
+use super::noise::{NOISE, NOISE_GROWTH, NOISE_SCALE, SMOOTH_NOISE, SMOOTH_NOISE_GROWTH, stated};
 use super::rays::Rays;
 use super::{Job, Method, MethodInfo, Param, ParamKind};
+use crate::camera::Sensor;
 use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::explanation::Explanation;
 use crate::group::Grouper;
 use crate::map::{AnyView, DepthView, Pixel};
 use crate::noise::scales::{Errors, RAY, Scales};
-use crate::noise::{NoiseModel, RoundingFinder, Space};
+use crate::noise::{NoiseModel, Rounding, RoundingFinder, SensorNoise, Space};
 use crate::parallel::side_by_side;
 use crate::with_view;
 use bent::Bent;
@@ -87,6 +88,9 @@ const PARAMS: &[Param] = &[
     },
     NOISE,
     NOISE_GROWTH,
+    SMOOTH_NOISE,
+    SMOOTH_NOISE_GROWTH,
+    NOISE_SCALE,
     Param {
         name: "ray",
         default: 0.0,
@@ -116,11 +120,20 @@ pub struct Planar {
     pub min: u32,
     /// A plane has at least this area ([`crate::detection::MetricPlane::area_m2`]), square metres; 0 for off.
     pub min_area: f64,
-    /// Standard deviation of a pixel: of depth at range 0, metres; of disparity, map units. If this and
+    /// Standard deviation of a pixel by itself: of depth at range 0, metres; of disparity, map units. If this and
     /// `noise_growth` are 0, it is the sensor's ([`crate::Sensor::noise`]), or else estimated from each map.
     pub noise: f64,
-    /// What the standard deviation of depth grows by with the square of the range, 1/m.
+    /// What the standard deviation of depth grows by with the square of the range, 1/m; not used for disparity.
     pub noise_growth: f64,
+    /// Standard deviation of the part of the error that neighbouring pixels share over tens of pixels, in the units of
+    /// `noise`: it does not average out within a surface. If this and `smooth_noise_growth` are 0, it is the sensor's
+    /// ([`crate::Sensor::smooth_noise`]), or else estimated from each map.
+    pub smooth_noise: f64,
+    /// What that of depth grows by with the square of the range, 1/m; not used for disparity.
+    pub smooth_noise_growth: f64,
+    /// What both parts are multiplied by, stated or estimated, 0.01..=100; a `ray` that is estimated, too. Larger joins
+    /// more.
+    pub noise_scale: f64,
     /// How well the ray of a pixel is known, pixels, one standard deviation, 0..=100: what a surface's slope makes of it
     /// comes on top of the noise. If it is 0, it is estimated from each map, as 0.05 and more, whether or not the noise
     /// is stated.
@@ -131,15 +144,55 @@ pub struct Planar {
 
 impl Planar {
     fn from_values(values: &[f64]) -> Self {
-        let &[min, min_area, noise, noise_growth, ray, confidence] = values else {
+        let &[min, min_area, noise, noise_growth, smooth_noise, smooth_noise_growth, noise_scale, ray, confidence] =
+            values
+        else {
             panic!("one value for each row of PARAMS");
         };
-        Planar { min: min as u32, min_area, noise, noise_growth, ray, confidence }
+        Planar {
+            min: min as u32,
+            min_area,
+            noise,
+            noise_growth,
+            smooth_noise,
+            smooth_noise_growth,
+            noise_scale,
+            ray,
+            confidence,
+        }
     }
 
-    fn values(&self) -> [f64; 6] {
-        let &Planar { min, min_area, noise, noise_growth, ray, confidence } = self;
-        [min.into(), min_area, noise, noise_growth, ray, confidence]
+    fn values(&self) -> [f64; 9] {
+        let &Planar { min, min_area, noise, noise_growth, .. } = self;
+        let &Planar { smooth_noise, smooth_noise_growth, noise_scale, ray, confidence, .. } = self;
+        [min.into(), min_area, noise, noise_growth, smooth_noise, smooth_noise_growth, noise_scale, ray, confidence]
+    }
+
+    /// The noise to expect: each part as the parameters state it, or else as the sensor's, or else as a map shows it whose
+    /// values are rounded so.
+    fn expected(&self, sensor: &Sensor, shown: &Errors, rounding: Rounding) -> NoiseModel {
+        let (space, scale) = (Space::of(sensor.measure), self.noise_scale);
+        // What is stated for another kind of map counts as not stated.
+        let model = |noise: SensorNoise| {
+            Some(NoiseModel::new(sensor.measure, noise.times(scale), 0.0)?.with_rounding(rounding))
+        };
+        let estimated = |factor: f64| shown.times(factor, space);
+        let white =
+            stated(space, self.noise, self.noise_growth).or(sensor.noise).and_then(model).unwrap_or_else(|| {
+                model(estimated(shown.white)).expect("an estimate is of the map's own kind").of_scatter()
+            });
+        let smooth = stated(space, self.smooth_noise, self.smooth_noise_growth)
+            .or(sensor.smooth_noise)
+            .filter(|&noise| model(noise).is_some())
+            .unwrap_or_else(|| estimated(shown.smooth));
+        let smooth = smooth.times(scale);
+        match self.ray {
+            0.0 => {
+                let [ray, smooth_ray] = [shown.white, shown.smooth].map(|factor| scale * factor * shown.ray);
+                white.with_ray(ray.max(RAY[0])).with_smooth(smooth, smooth_ray)
+            }
+            ray => white.with_ray(ray).with_smooth(smooth, 0.0),
+        }
     }
 
     /// Fewest pixels of a region of tiles: a plane has many of its pixels in tiles that it shares with others.
@@ -268,29 +321,13 @@ impl Runner {
     /// The map in the space where planes are affine, its tiles, and the noise to expect.
     fn sum_tiles<T: Pixel>(&mut self, map: &DepthView<'_, T>, job: &Job<'_>) -> NoiseModel {
         let Runner { params, field, pyramid, scales, rounding, .. } = self;
-        let sensor = &job.sensor;
-        let space = Space::of(sensor.measure);
+        let space = Space::of(job.sensor.measure);
         field.prepare(map);
         let rounding = rounding.find(map, space);
         pyramid.sum(map, space, job.threads, field);
-        let model = |noise| Some(NoiseModel::new(sensor.measure, noise, 0.0)?.with_rounding(rounding));
-        let stated = stated(space, params.noise, params.noise_growth).or(sensor.noise).and_then(model);
         scales.look(pyramid);
-        let errors = scales.errors(space, &rounding).unwrap_or(Errors {
-            constant: 0.0,
-            square: 0.0,
-            ray: 0.0,
-            white: 4.0,
-            smooth: 0.25,
-        });
-        let ray = if params.ray > 0.0 { params.ray } else { (errors.white * errors.ray).max(RAY[0]) };
-        let noise = stated.unwrap_or_else(|| {
-            model(errors.times(errors.white, space)).expect("an estimate is of the map's own kind").of_scatter()
-        });
-        noise.with_ray(ray).with_smooth(
-            errors.times(errors.smooth, space),
-            if params.ray > 0.0 { 0.0 } else { errors.smooth * errors.ray },
-        )
+        let errors = scales.errors(space, &rounding).unwrap_or(Errors::NONE);
+        params.expected(&job.sensor, &errors, rounding)
     }
 
     /// Regions of cells on one plane.

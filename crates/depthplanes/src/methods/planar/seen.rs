@@ -13,7 +13,8 @@ use crate::camera::{Hessian, Measure, Sensor};
 use crate::detection::Detection;
 use crate::explanation::{Finding, Limit};
 use crate::methods::noise::stated;
-use crate::noise::{NoiseModel, Slants, Space};
+use crate::noise::scales::RAY;
+use crate::noise::{NoiseModel, SensorNoise, Space};
 
 /// Unit of everything that is measured in noise.
 const DEVIATIONS: &str = "standard deviations";
@@ -150,12 +151,7 @@ impl Seen {
     fn describe_noise(&mut self, run: &Runner) {
         let Some(noise) = self.noise.filter(|_| self.q.is_finite()) else { return };
         let space = Space::of(self.sensor.measure);
-        let is_of_map = |stated| NoiseModel::new(self.sensor.measure, stated, 0.0).is_some();
-        let source = match (stated(space, run.params.noise, run.params.noise_growth), self.sensor.noise) {
-            (Some(_), _) => "from the parameters",
-            (None, Some(stated)) if is_of_map(stated) => "the sensor's, from its preset or table",
-            _ => "estimated from the map",
-        };
+        let source = self.source(stated(space, run.params.noise, run.params.noise_growth), self.sensor.noise);
         let sigma = noise.variance(self.q).sqrt();
         let finding = Finding::new("tiles", "noise expected of the pixel", source);
         let finding = match space {
@@ -163,13 +159,37 @@ impl Seen {
             Space::Value => finding.with("of the value", sigma, "map units"),
         };
         self.findings.push(finding);
-        let source = match (run.params.ray > 0.0, noise.ray() > Slants::LEAST) {
+        self.describe_smooth(run, noise);
+        let source = match (run.params.ray > 0.0, noise.ray() > RAY[0]) {
             (true, _) => "from the parameters",
             (false, true) => "estimated from the map",
             (false, false) => "the least that is expected",
         };
         let finding = Finding::new("tiles", "how well its ray is known", source);
         self.findings.push(finding.with("within", noise.ray(), "pixels"));
+    }
+
+    fn describe_smooth(&mut self, run: &Runner, noise: NoiseModel) {
+        let space = Space::of(self.sensor.measure);
+        let stated = stated(space, run.params.smooth_noise, run.params.smooth_noise_growth);
+        let source = self.source(stated, self.sensor.smooth_noise);
+        let sigma = noise.smooth_sigma(self.q);
+        let finding = Finding::new("tiles", "the part that its neighbours share", source);
+        self.findings.push(match space {
+            Space::InverseDepth { .. } => finding.with("of depth", 1e3 * sigma / (self.q * self.q), "mm"),
+            Space::Value => finding.with("of the value", sigma, "map units"),
+        });
+    }
+
+    /// Where a part of the noise is from.
+    fn source(&self, stated: Option<SensorNoise>, of_sensor: Option<SensorNoise>) -> &'static str {
+        match (stated, of_sensor) {
+            (Some(_), _) => "from the parameters",
+            (None, Some(noise)) if NoiseModel::new(self.sensor.measure, noise, 0.0).is_some() => {
+                "the sensor's, from its preset or table"
+            }
+            _ => "estimated from the map",
+        }
     }
 
     /// The region of the tile as it grew and was merged, and whether it is large enough.
