@@ -54,7 +54,7 @@ pub(super) const NOISE_SCALE: Param = Param {
     min: 0.01,
     max: 100.0,
     kind: ParamKind::Real,
-    unit: "",
+    unit: "times",
     meaning: "What all noise is multiplied by, stated or estimated; larger joins more.",
     source: None,
 };
