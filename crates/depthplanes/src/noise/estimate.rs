@@ -4,8 +4,8 @@
 //! [`Scales`] sees of the maps' cells. What rounding to steps makes, D^2 / 12, is taken off the white part: rounding is
 //! part of the map, not of the sensor.
 
-use super::scales::{Cell, Cells, Errors, FEW, SIDES, Scales};
 use super::rounding::{Rounding, RoundingFinder};
+use super::scales::{Cell, Cells, Errors, FEW, SIDES, Scales};
 use super::steps::Steps;
 use super::{NoiseModel, SensorNoise, Space};
 use crate::camera::{Measure, Sensor};

@@ -12,7 +12,9 @@ use super::grow::{Region, Regions};
 use super::merge::Pair;
 use super::pyramid::Pyramid;
 use super::quadratic::{Frame, Sums};
-use super::thresholds::{Allowance, GENTLE, GENTLE_SHARE, GENTLE_SIZE, JOINT_GAIN, JOINT_MISS, LOOSE_MISS, TURN};
+use super::thresholds::{
+    Allowance, GENTLE, GENTLE_LARGER, GENTLE_SHARE, GENTLE_SIZE, JOINT_GAIN, JOINT_MISS, LOOSE_MISS, TURN,
+};
 use super::turns::Border;
 use crate::group::reserve_to;
 use crate::methods::rays::{Rays, dot};
@@ -100,7 +102,7 @@ pub(super) enum Sign {
     Surroundings,
     /// Off its border the surface goes on and turns gently.
     Turns,
-    /// It and neighbours of its size turn gently where they meet, and it bows or is small.
+    /// It and neighbours of its size turn gently where they meet, and it bows, or it is small and the surface goes on.
     Folds,
 }
 
@@ -153,7 +155,9 @@ impl Facets {
                     *sign = Some(Sign::Surroundings);
                 } else if is_small && border.turns(&boxes[id]) {
                     *sign = Some(Sign::Turns);
-                } else if folds[id].is_gentle() && (is_small || bows.is_bowed(number, region, rays, 0.0)) {
+                } else if folds[id].is_gentle()
+                    && ((is_small && folds[id].goes_on) || bows.is_bowed(number, region, rays, 0.0))
+                {
                     *sign = Some(Sign::Folds);
                 }
             }
@@ -166,7 +170,10 @@ impl Facets {
 /// How much of a region's border with others turns gently.
 #[derive(Clone, Copy, Debug, Default)]
 struct Fold {
+    /// Places where it turns gently.
     gentle: f64,
+    /// Whether it does so towards several neighbours, or towards one that is much larger: a roof has two halves.
+    goes_on: bool,
     all: f64,
 }
 
@@ -200,6 +207,8 @@ impl Scene<'_> {
             let is_gentle = !self.are_apart(pair) && turn_gently(&self.all[a], &self.all[b], rays);
             for (id, other) in [(a, b), (b, a)] {
                 let counts = is_gentle && self.all[other].sums.n > GENTLE_SIZE * self.all[id].sums.n;
+                let is_larger = self.all[other].sums.n > GENTLE_LARGER * self.all[id].sums.n;
+                folds[id].goes_on |= counts && (is_larger || folds[id].gentle > 0.0);
                 folds[id].gentle += if counts { pair.contacts } else { 0.0 };
                 folds[id].all += pair.contacts;
             }
