@@ -1,7 +1,7 @@
 //! A sensor's noise: from files, from presets, and whether it suits the map.
 
-use depthplanes::noise::{NoiseModel, NoiseTable, SensorNoise};
 use depthplanes::Intrinsics;
+use depthplanes::noise::{NoiseModel, NoiseTable, SensorNoise};
 use depthplanes_io::noise_table::parse;
 use depthplanes_io::presets::{self, SENSOR_PRESETS};
 use depthplanes_io::{Error, ReadOptions, decode, encoding, read_noise_table};
