@@ -1,8 +1,9 @@
 //! Noise models against their formulas, and estimates against the noise of made-up scenes.
 
+use depthplanes::methods::Planar;
 use depthplanes::noise::{Estimate, Estimator, MAX_ROWS, NoiseModel, NoiseTable, Patch, SensorNoise};
 use depthplanes::scene::{Random, SensorError, SensorModel, Spec};
-use depthplanes::{DepthView, Error, Measure};
+use depthplanes::{DepthView, Detector, Error, Measure, Sensor};
 
 const METRES: Measure = Measure::Depth { metres: 1.0 };
 
@@ -245,4 +246,34 @@ fn the_parts_of_made_up_cameras_are_told_apart() {
             }
         }
     }
+}
+
+#[test]
+fn each_part_is_the_parameters_or_else_the_sensors_and_a_larger_scale_joins_more() {
+    let frame = "room:sensor=kinect,size=320x240".parse::<Spec>().unwrap().frame().unwrap();
+    let labels = |params: Planar, noise: [Option<SensorNoise>; 2]| {
+        let [noise, smooth_noise] = noise;
+        let sensor = Sensor { noise, smooth_noise, ..frame.sensor };
+        Detector::new(params).unwrap().sensor(sensor).detect(frame.view()).unwrap().labels.clone()
+    };
+    let growing = |growth: f64| Some(SensorNoise::Depth { base: 0.0, growth });
+    let plain = labels(Planar::default(), [None; 2]);
+    let white = Planar { noise_growth: 0.002, ..Planar::default() };
+    let smooth = Planar { smooth_noise_growth: 0.004, ..Planar::default() };
+    for (params, of_sensor, another) in [
+        (white, [growing(0.002), None], [growing(0.005), None]),
+        (smooth, [None, growing(0.004)], [None, growing(0.0001)]),
+    ] {
+        let by_parameter = labels(params, [None; 2]);
+        assert_ne!(by_parameter, plain);
+        assert_eq!(labels(Planar::default(), of_sensor), by_parameter);
+        assert_eq!(labels(params, another), by_parameter);
+    }
+    let planes = |noise_scale: f64| {
+        let labels = labels(Planar { noise_scale, ..Planar::default() }, [None; 2]);
+        labels.into_iter().max().unwrap()
+    };
+    let [half, one, three] = [0.5, 1.0, 3.0].map(planes);
+    println!("{half}, {one} and {three} planes with half, all and three times the noise");
+    assert!(half > one && one > three);
 }
