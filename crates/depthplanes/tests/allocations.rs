@@ -154,7 +154,9 @@ fn later_frames_with_coplanar_planes_joined_allocate_nothing() {
     let (width, height) = (120, 90);
     for sensor in &sensors()[1..] {
         let ngaf = Detector::new(Ngaf { theta: 3.0, min: 2, ..Ngaf::default() }).unwrap();
-        let planar = Detector::new(Planar { min: 0, min_area: 1e-4, ..Planar::default() }).unwrap();
+        // Little noise, so that there are many planes.
+        let planar = Planar { min: 0, min_area: 1e-4, noise_scale: 0.1, ..Planar::default() };
+        let planar = Detector::new(planar).unwrap();
         for detector in [ngaf, planar] {
             let mut random = Random(5);
             let within = Coplanar::new(10.0, 0.1).unwrap();

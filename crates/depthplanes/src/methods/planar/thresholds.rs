@@ -69,4 +69,4 @@ pub(super) const GENTLE_SHARE: f64 = 0.4;
 /// A neighbour counts for that from so much of the facet's pixels on.
 pub(super) const GENTLE_SIZE: f64 = 0.25;
 /// One neighbour that has so many times the pixels is enough: the facet is a bump of it.
-pub(super) const GENTLE_LARGER: f64 = 4.0;
+pub(super) const GENTLE_LARGER: f64 = 2.0;
