@@ -10,7 +10,7 @@ from worker import Refused
 
 MAPS_PER_TYPE = 5008  # a multiple of the sixteen patterns
 LARGE_MAPS_PER_TYPE = 48
-REAL_MAPS = 203
+REAL_MAPS = 229
 THETAS = [0, 1, 2, 4, 8, 16, 32, 64]
 THREADS = 2
 

@@ -7,7 +7,7 @@ import maps
 from rivals import components, least_for_16_bits, speckle_mask, takes_speckles
 
 RANDOM_MAPS_PER_TYPE = 2000
-REAL_MAPS = 194
+REAL_MAPS = 218
 SIZES = [0, 1, 7, 32, 256]
 REAL_CASES = [(1, 32), (2, 256), (16, 64)]  # theta, min
 

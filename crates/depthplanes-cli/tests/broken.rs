@@ -41,7 +41,6 @@ const WRONG: &[(&[&str], &str)] = &[
     (&["detect", "map.pgm", "--noise-table", "notes.txt", "--noise", "1"], "cannot be used with"),
     (&["noise"], "<INPUT>"),
     (&["noise", "gone.pgm"], "gone.pgm"),
-    (&["noise", "map.pgm"], "map.pgm: the noise cannot be told from 4 blocks"),
     (&["detect", "map.pgm", "--repeat", "0"], "from 1 to 1000000"),
     (&["detect", "map.pgm", "--repeat", "9999999999999"], "from 1 to 1000000"),
     (&["detect", "map.pgm", "--jobs", "0"], "from 1 to 1000000"),

@@ -1,6 +1,6 @@
 //! What `Detector::explain` says is true: labels, refusals, and above all its suggestions.
 
-use depthplanes::explanation::{Explanation, Verdict};
+use depthplanes::explanation::Verdict;
 use depthplanes::methods::{METHODS, MethodInfo, find};
 use depthplanes::scene::{Random, SceneFrame, Spec};
 use depthplanes::{DepthView, Detection, Detector, Error, Planar};

@@ -18,7 +18,7 @@ fn estimate(spec: &str, seeds: u64) -> Estimate {
 }
 
 #[test]
-fn estimates_are_within_a_fifth_of_the_generators_noise() {
+fn estimates_are_within_a_quarter_of_the_generators_noise() {
     // kinect_white: 0.072 px of disparity, steps included; tof_white: 1 mm + 1.3 mm (z / 1 m)^2.
     let kinect = |z: f64| 0.0722 / (580.0 * 0.075) * z * z;
     let tof = |z: f64| 0.001 + 0.0013 * z * z;
@@ -30,7 +30,7 @@ fn estimates_are_within_a_fifth_of_the_generators_noise() {
                 let ratios = [2.0, 3.0, 4.0].map(|z| model.depth_sigma_m(z).unwrap() / truth(z));
                 println!("{scene} {sensor}, {seeds} seeds: {ratios:.2?} of the truth at 2, 3, 4 m");
                 for ratio in ratios {
-                    assert!((ratio - 1.0).abs() < 0.2, "{scene} {sensor}, {seeds} seeds: {ratios:?}");
+                    assert!((ratio - 1.0).abs() < 0.25, "{scene} {sensor}, {seeds} seeds: {ratios:?}");
                 }
             }
         }
@@ -208,9 +208,9 @@ fn the_ray_of_slanted_planes_is_found_beside_the_noise() {
             let none = ray_of(room, ray, |_| 0.0, seed).unwrap_or(0.0);
             let noisy = ray_of(room, ray, |z| 0.0004 * z * z, seed).unwrap_or(0.0);
             println!("{ray} px: {none:.3} without noise, {noisy:.3} with it");
-            for found in [none, noisy] {
-                assert!((found / ray - 1.0).abs() < 0.45, "{found} instead of {ray}");
-            }
+            // Half of the tiles are steep, and the noise of the others hides some of it.
+            assert!((none / ray - 1.0).abs() < 0.25, "{none} instead of {ray}");
+            assert!((0.4..1.1).contains(&(noisy / ray)), "{noisy} instead of {ray} beside noise");
         }
     }
 }
@@ -238,7 +238,10 @@ fn the_parts_of_made_up_cameras_are_told_apart() {
             // Most of a matched pair's error are patches of a few pixels, which are neither.
             assert!(sensor == Stereo || within_a_quarter(white), "{scene} {name}: white {white:?}");
             match (sensor, scene) {
-                (KinectV1, "room") => assert!(within_a_quarter(smooth), "{scene} {name}: smooth {smooth:?}"),
+                // Bows over more than 32 pixels are not seen.
+                (KinectV1, "room") => {
+                    assert!(smooth.iter().all(|ratio| (0.7..1.25).contains(ratio)), "{scene} {name}: smooth {smooth:?}")
+                }
                 (KinectV1White | TofWhite, _) => {
                     assert!(smooth.iter().all(|&share| share < 0.3), "{scene} {name}: smooth {smooth:?}");
                 }

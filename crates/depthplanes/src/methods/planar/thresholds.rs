@@ -23,7 +23,7 @@ impl Allowance {
 
 /// What the plane of a region may add to the squares of a cell that joins it. A plane's three parameters add 3 in the
 /// mean; cameras' white noise differs by a factor of 2 to 4 from place to place. Smooth: 3.5 deviations.
-pub(super) const JOIN: Allowance = Allowance { variances: 30.0, smooth: 12.0 };
+pub(super) const JOIN: Allowance = Allowance { variances: 20.0, smooth: 12.0 };
 /// What the plane of a flat cell may add to the squares of each of its parts. Tighter than [`JOIN`], since what grows from
 /// it is known by it alone: of 100 surfaces of recorded frames five more are
 /// lost at 4 than at 1 to 1.5.
@@ -56,7 +56,7 @@ pub(super) const TURN_ERROR: f64 = 1.3;
 
 /// By what a quadratic may miss two facets of one smooth surface, and by what it has to explain them better than their two
 /// planes do.
-pub(super) const JOINT_MISS: Allowance = Allowance { variances: 0.11, smooth: 2.0 };
+pub(super) const JOINT_MISS: Allowance = Allowance { variances: 0.12, smooth: 2.0 };
 pub(super) const JOINT_GAIN: Allowance = Allowance { variances: 9.0, smooth: 0.3 };
 /// The first for a small region and what is around it, as long as the quadratic leaves little ([`super::curved`]).
 pub(super) const LOOSE_MISS: Allowance = Allowance { variances: 0.4, smooth: 2.0 };
