@@ -17,7 +17,7 @@ pub(super) const DATASET: Dataset = Dataset {
 };
 
 /// Scatter of the grey levels about planes.
-const NOISE: SensorNoise = SensorNoise::Value { sigma: 2.0 };
+const NOISE: SensorNoise = SensorNoise::Value { sigma: 1.0 };
 /// Fewest pixels of a colour that is a plane: edges and compression make others.
 const LEAST: usize = 100;
 /// Brightest grey that is no plane.
