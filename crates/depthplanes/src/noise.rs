@@ -181,7 +181,7 @@ impl NoiseModel {
 
     /// Standard deviation of the smooth part of q.
     pub(crate) fn smooth_sigma(&self, q: f64) -> f64 {
-        NoiseModel { noise: self.smooth, ..*self }.sensor_sigma(q)
+        self.sigma_by(&self.smooth, q)
     }
 
     /// How well the ray of a pixel is known, pixels, one standard deviation; it is no part of [`NoiseModel::variance`],
@@ -255,8 +255,14 @@ impl NoiseModel {
     /// An error of depth of `s` metres is `s p^2` in inverse depth p, and that over the slope in units of q.
     #[inline]
     pub fn sensor_sigma(&self, q: f64) -> f64 {
+        self.sigma_by(&self.noise, q)
+    }
+
+    /// The same of either part.
+    #[inline(always)]
+    fn sigma_by(&self, part: &SensorNoise, q: f64) -> f64 {
         let inverse_depth = || (self.slope * q + self.offset).max(0.0);
-        match &self.noise {
+        match part {
             SensorNoise::Value { sigma } => *sigma,
             SensorNoise::Depth { base, growth } => {
                 let p = inverse_depth();

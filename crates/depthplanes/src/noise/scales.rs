@@ -20,10 +20,10 @@ const WHOLE: f32 = 0.75;
 const STRETCHES: usize = 6;
 /// Ratios of constant error to error that grows with q^2 that are tried.
 const SHAPES: usize = 17;
-/// Median of the square of a standard normal number, and of chi-squared of the 13 degrees of freedom of a tile.
+/// Median and lower quartile of the square of a standard normal number.
 const MEDIAN_OF_SQUARE: f64 = 0.454_936;
-/// The lower quartile of the first.
 const QUARTILE_OF_SQUARE: f64 = 0.101_531;
+/// Median of chi-squared of the 13 degrees of freedom of a tile.
 const MEDIAN_OF_TILE: f64 = 12.34;
 /// Largest ratio of the scatters of means over cells and over cells of half the side: correlated error does not grow with
 /// the side, what grows faster is the scene.

@@ -29,7 +29,7 @@ pub(super) struct Sums<T> {
     pub(super) c: T,
     /// Squared residuals about it; infinite if it has none.
     pub(super) squares: T,
-    /// What it adds to the squares of one of the cell's parts, at most, as a multiple of [`drift`].
+    /// What it adds to the squares of one of the cell's parts, at most.
     pub(super) strain: T,
 }
 
@@ -115,7 +115,7 @@ impl Cell {
 
     /// Largest sum of its squared residuals about the plane of a region that a flat cell joins.
     #[inline(always)]
-    pub(super) fn most_drifted(&self) -> f64 {
+    pub(super) fn most_joining(&self) -> f64 {
         self.squares + JOIN.of(self.n, self.variance, self.smooth)
     }
 

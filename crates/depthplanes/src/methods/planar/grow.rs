@@ -102,7 +102,7 @@ impl Region {
     /// Takes a cell in if its pixels lie on the plane.
     #[inline(always)]
     fn takes(&mut self, cell: &Cell, only_flat: bool, confidence: f64) -> bool {
-        let most = if only_flat { cell.most_drifted() } else { cell.most_squares(confidence) };
+        let most = if only_flat { cell.most_joining() } else { cell.most_squares(confidence) };
         let is_small = self.sums.n < SMALL;
         if !is_small && cell.squares_about(self.abc, self.origin) > most {
             return false;

@@ -47,6 +47,7 @@ impl Planes<'_> {
     #[inline(always)]
     pub(super) fn variance(&self, region: &Region, q: f64) -> f64 {
         let [a, b, _] = region.abc.map(|number| number as f32);
+        // The two parts of a ray are taken at their worst, off to the same side.
         self.noise.variance(q)
             + self.noise.smooth_sigma(q).powi(2)
             + f64::from(of_slope((self.noise.ray() + self.noise.smooth_ray()) as f32, a, b))
