@@ -13,7 +13,7 @@ use super::merge::Pair;
 use super::pyramid::Pyramid;
 use super::quadratic::{Frame, Sums};
 use super::thresholds::{
-    Allowance, GENTLE, GENTLE_LARGER, GENTLE_SHARE, GENTLE_SIZE, JOINT_GAIN, JOINT_MISS, LOOSE_MISS, TURN,
+    Allowance, BOWED_ANGLE, GENTLE, GENTLE_LARGER, GENTLE_SHARE, GENTLE_SIZE, JOINT_GAIN, JOINT_MISS, LOOSE_MISS, TURN,
 };
 use super::turns::Border;
 use crate::group::reserve_to;
@@ -183,11 +183,12 @@ impl Fold {
     }
 }
 
-/// Whether two planes differ by no more than [`GENTLE`] degrees.
+/// Whether two planes differ by no more than [`GENTLE`] degrees, and by more than the pieces of one that bows.
 fn turn_gently(a: &Region, b: &Region, rays: &Rays) -> bool {
     let [m, n] = [a, b].map(|region| rays.inverse([region.abc[0], region.abc[1]], |u, v| region.at(u, v)));
     let (both, squares) = (dot(m, n), dot(m, m) * dot(n, n));
-    both > 0.0 && both * both >= GENTLE.to_radians().cos().powi(2) * squares
+    let least = |angle: f64| angle.to_radians().cos().powi(2) * squares;
+    both > 0.0 && (least(GENTLE)..least(BOWED_ANGLE)).contains(&(both * both))
 }
 
 /// Whether there is a step between two regions where they touch.

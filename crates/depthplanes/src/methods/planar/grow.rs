@@ -74,6 +74,13 @@ impl Region {
         self.abc[0] * (u - u0) + self.abc[1] * (v - v0) + self.abc[2] + q0
     }
 
+    /// Its squared residuals as a multiple of what the noise leaves. A wall that a camera bows lies off its plane by more
+    /// than any small patch of it shows.
+    #[inline(always)]
+    pub(super) fn excess(&self) -> f64 {
+        self.squares / (self.variance + self.smooth)
+    }
+
     /// Fits its plane to its sums.
     pub(super) fn refit(&mut self) {
         if let Some(fit) = self.sums.fit() {

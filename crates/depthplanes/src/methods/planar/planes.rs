@@ -43,14 +43,16 @@ impl Planes<'_> {
         }
     }
 
-    /// Variance of a pixel about a region's plane at q: the noise, and what the slope makes of the ray.
+    /// Variance of a pixel about a region's plane at q: the noise, and what the slope makes of the ray; in a region that
+    /// bows by more than that, so much more.
     #[inline(always)]
     pub(super) fn variance(&self, region: &Region, q: f64) -> f64 {
         let [a, b, _] = region.abc.map(|number| number as f32);
         // The two parts of a ray are taken at their worst, off to the same side.
-        self.noise.variance(q)
+        let expected = self.noise.variance(q)
             + self.noise.smooth_sigma(q).powi(2)
-            + f64::from(of_slope((self.noise.ray() + self.noise.smooth_ray()) as f32, a, b))
+            + f64::from(of_slope((self.noise.ray() + self.noise.smooth_ray()) as f32, a, b));
+        region.excess().max(1.0) * expected
     }
 
     /// Square of the largest distance from a region's plane at q.
