@@ -174,6 +174,11 @@ impl NoiseModel {
         NoiseModel { smooth, smooth_ray, ..self }
     }
 
+    /// The same with so many times the smooth part.
+    pub(crate) fn with_smooth_times(self, factor: f64) -> Self {
+        self.with_smooth(self.smooth.times(factor), self.smooth_ray * factor)
+    }
+
     /// Pixels of the ray whose error is smooth.
     pub(crate) fn smooth_ray(&self) -> f64 {
         self.smooth_ray

@@ -83,6 +83,12 @@ impl Merger {
         while self.merge_best(&mut regions.all, rays, threads) {}
     }
 
+    /// Joins more of the listed pairs, since the noise is known to be larger.
+    pub(super) fn merge_again(&mut self, all: &mut [Region], rays: &Rays, threads: usize) {
+        self.pairs.iter_mut().for_each(|pair| pair.cost = f64::NAN);
+        while self.merge_best(all, rays, threads) {}
+    }
+
     /// Leaves out regions of fewer than `least` pixels, and those that became part of another.
     ///
     /// # Errors

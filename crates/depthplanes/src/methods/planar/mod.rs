@@ -28,6 +28,7 @@ mod rule;
 mod seams;
 mod seen;
 mod settle;
+mod shown;
 #[cfg(test)]
 mod tests;
 mod thresholds;
@@ -61,6 +62,7 @@ use planes::Planes;
 use pyramid::Pyramid;
 use reach::Reach;
 use seams::Seams;
+use shown::Shown;
 
 pub(super) static INFO: MethodInfo = MethodInfo {
     name: "planar",
@@ -181,11 +183,7 @@ impl Planar {
             stated(space, self.noise, self.noise_growth).or(sensor.noise).and_then(model).unwrap_or_else(|| {
                 model(estimated(shown.white)).expect("an estimate is of the map's own kind").of_scatter()
             });
-        let smooth = stated(space, self.smooth_noise, self.smooth_noise_growth)
-            .or(sensor.smooth_noise)
-            .filter(|&noise| model(noise).is_some())
-            .unwrap_or_else(|| estimated(shown.smooth));
-        let smooth = smooth.times(scale);
+        let smooth = self.stated_smooth(sensor).unwrap_or_else(|| estimated(shown.smooth)).times(scale);
         match self.ray {
             0.0 => {
                 let [ray, smooth_ray] = [shown.white, shown.smooth].map(|factor| scale * factor * shown.ray);
@@ -193,6 +191,12 @@ impl Planar {
             }
             ray => white.with_ray(ray).with_smooth(smooth, 0.0),
         }
+    }
+
+    /// The smooth part as the parameters state it, or else as the sensor's, if it is of the map's kind.
+    fn stated_smooth(&self, sensor: &Sensor) -> Option<SensorNoise> {
+        let stated = stated(Space::of(sensor.measure), self.smooth_noise, self.smooth_noise_growth);
+        stated.or(sensor.smooth_noise).filter(|&noise| NoiseModel::new(sensor.measure, noise, 0.0).is_some())
     }
 
     /// Fewest pixels of a region of tiles: a plane has many of its pixels in tiles that it shares with others.
@@ -232,6 +236,7 @@ struct Runner {
     regions: Regions,
     merger: Merger,
     facets: Facets,
+    shown: Shown,
     explainer: Explainer,
     image: Vec<u16>,
     seams: Seams,
@@ -264,6 +269,8 @@ enum Moment {
     Grown,
     /// Those that one plane explains are merged, none is dropped yet.
     Merged,
+    /// Large regions showed more of the smooth part, and more are merged by it.
+    Shown,
     /// It is known which are curved and which are explained by others.
     Judged,
     /// Every pixel has its region.
@@ -284,10 +291,13 @@ impl Runner {
         if self.params.min_area > 0.0 {
             job.sensor.check_metric("min-area")?;
         }
-        let noise = self.sum_tiles(&map, job);
+        let mut noise = self.sum_tiles(&map, job);
         job.done("tiles");
         let rays = &Rays::of(&job.sensor, map.width(), map.height());
         self.grow(&noise, rays, job.threads, watch)?;
+        if self.params.stated_smooth(&job.sensor).is_none() {
+            self.look_at_regions(&mut noise, rays, job.threads, watch)?;
+        }
         job.done("grow");
         self.judge(Optics { noise: &noise, rays }, job.threads, watch);
         job.done("judge");
@@ -340,6 +350,31 @@ impl Runner {
         self.merger.merge(&self.pyramid.grids[0], &mut self.regions, rays, threads);
         watch(Moment::Merged, self, noise);
         self.merger.drop_small(&mut self.pyramid.grids[0], &mut self.regions, self.params.least(), threads)
+    }
+
+    /// Takes the smooth part as large regions show it, and merges those that are one by it.
+    fn look_at_regions(
+        &mut self,
+        noise: &mut NoiseModel,
+        rays: &Rays,
+        threads: usize,
+        watch: &mut Watch<'_>,
+    ) -> Result<()> {
+        let Runner { params, pyramid, regions, merger, facets, shown, .. } = self;
+        pyramid.hand_up(threads);
+        facets.bows.measure(pyramid, &regions.all);
+        let scale = params.noise_scale * params.noise_scale;
+        let factor = shown.factor(&regions.all, &facets.bows, rays, pyramid.grids[0].len(), scale);
+        if factor == 1.0 {
+            return Ok(());
+        }
+        *noise = noise.with_smooth_times(factor.sqrt());
+        pyramid.widen_smooth(factor as f32);
+        regions.all.iter_mut().for_each(|region| region.smooth *= factor);
+        merger.merge_again(&mut regions.all, rays, threads);
+        merger.drop_small(&mut pyramid.grids[0], regions, params.least(), threads)?;
+        watch(Moment::Shown, self, noise);
+        Ok(())
     }
 
     /// Which regions are no surface, and which of the others are curved.

@@ -60,6 +60,13 @@ impl Pyramid {
         in_parts(threads, self.whole(), expect, |(), ()| ());
     }
 
+    /// Takes the smooth part's variance so many times.
+    pub(super) fn widen_smooth(&mut self, factor: f32) {
+        for grid in &mut self.grids {
+            grid.smooth.iter_mut().for_each(|smooth| *smooth *= factor);
+        }
+    }
+
     /// A band's rows of the cells of a level.
     pub(super) fn rows_of(&self, band: &Range<usize>, level: usize) -> Range<usize> {
         finer(band, 1 << (LEVELS - 1 - level))

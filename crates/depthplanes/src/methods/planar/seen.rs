@@ -92,6 +92,7 @@ impl Seen {
         match moment {
             Moment::Grown => self.look_at_cells(run),
             Moment::Merged => self.look_at_region(run),
+            Moment::Shown => self.look_at_smooth(run, noise),
             Moment::Judged => self.look_at_judgement(run, noise),
             Moment::Assigned => self.look_at_planes(run, noise),
         }
@@ -173,12 +174,30 @@ impl Seen {
         let space = Space::of(self.sensor.measure);
         let stated = stated(space, run.params.smooth_noise, run.params.smooth_noise_growth);
         let source = self.source(stated, self.sensor.smooth_noise);
-        let sigma = noise.smooth_sigma(self.q);
         let finding = Finding::new("tiles", "the part that its neighbours share", source);
-        self.findings.push(match space {
+        self.findings.push(self.with_smooth(finding, &noise));
+    }
+
+    /// The smooth part as large regions show it, and what the region has become by it.
+    fn look_at_smooth(&mut self, run: &Runner, noise: &NoiseModel) {
+        if !self.q.is_finite() {
+            return;
+        }
+        let finding = Finding::new("grow", "the part that its neighbours share", "as large regions show it");
+        self.findings.push(self.with_smooth(finding, noise));
+        let grid = &run.pyramid.grids[0];
+        if let Some(region) = run.regions.all.get(grid.region[self.cell(grid)] as usize) {
+            let finding = Finding::new("grow", "the region of the tile, merged by that", "");
+            self.findings.push(finding.with("pixels", region.sums.n, ""));
+        }
+    }
+
+    fn with_smooth(&self, finding: Finding, noise: &NoiseModel) -> Finding {
+        let sigma = noise.smooth_sigma(self.q);
+        match Space::of(self.sensor.measure) {
             Space::InverseDepth { .. } => finding.with("of depth", 1e3 * sigma / (self.q * self.q), "mm"),
             Space::Value => finding.with("of the value", sigma, "map units"),
-        });
+        }
     }
 
     /// Where a part of the noise is from.

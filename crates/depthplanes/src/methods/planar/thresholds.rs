@@ -46,6 +46,15 @@ pub(super) const BOWED_STEP: f64 = 4.0;
 /// Variances of a pixel and of the smooth part that a step is held against.
 pub(super) const STEP_NOISE: Allowance = Allowance { variances: 3.25, smooth: 2.25 };
 
+/// Pixels from which on a region shows the smooth part of the error; from 1,000 to 5,000 the recorded frames are the same.
+pub(super) const SHOWN_PIXELS: f64 = 2000.0;
+/// The smooth part as a share of a large region's deviation from its plane, which holds its bow from end to end as well. Of
+/// 580 surfaces 92.4 % are whole without a look at the regions, 93.6 % at 0.4, 93.3 % at 0.5, 94.0 % at 0.7 and 92.2 % at 1,
+/// where twice as many are merged that are two.
+pub(super) const SHOWN: f64 = 0.5;
+/// Most times the smooth part may be that was estimated: where even more is shown, the regions are wrong.
+pub(super) const SHOWN_MOST: f64 = 10.0;
+
 /// Smallest bow of a curved region, root mean square, in deviations of the smooth part.
 pub(super) const BOW: f64 = 1.7;
 /// Variances that a quadratic has to explain beyond a region's plane: its three terms explain 3 of white noise, and
