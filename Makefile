@@ -11,6 +11,8 @@ CARGO ?= cargo
 PYTHON ?= python3
 FUZZ_SECONDS ?= 30
 ROUNDS ?= 31
+# Another state of the program, to be timed in turn.
+OTHER ?=
 # Folder of the sets of `eval`, those of its sets with a truth that are there, runs of each method on each map.
 DATA ?= ../shared/data
 set = $(if $(wildcard $(DATA)/$(2)),$(1))
@@ -80,10 +82,10 @@ bench: $(VENV) ## Measure against cc3d and OpenCV; writes benchmarks/record/MACH
 	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes --examples
 	$(PY) benchmarks/run.py --rounds $(ROUNDS) --record "benchmarks/record/$(MACHINE)/$$(date +%F).csv"
 
-bench-planar: ## Time planar by stage, size and threads; writes benchmarks/record/MACHINE/planar-DATE.csv
-	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes --examples
+bench-planar: ## Time planar on recorded and made-up frames, beside OTHER's program if stated; writes benchmarks/record/MACHINE/planar-DATE.csv
+	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes-io --examples
 	mkdir -p "benchmarks/record/$(MACHINE)"
-	target/release/examples/bench_planar $(ROUNDS) > "benchmarks/record/$(MACHINE)/planar.partial"
+	target/release/examples/bench_planar $(ROUNDS) '$(DATA)' $(OTHER) > "benchmarks/record/$(MACHINE)/planar.partial"
 	mv "benchmarks/record/$(MACHINE)/planar.partial" "benchmarks/record/$(MACHINE)/planar-$$(date +%F).csv"
 
 tables: $(VENV) ## Write docs/paper-tables.md: the paper's tables on the same maps
