@@ -9,6 +9,7 @@ mod bands;
 mod bent;
 mod bows;
 mod contact;
+mod counts;
 mod curved;
 mod enlarged;
 mod explain;
@@ -51,6 +52,7 @@ use crate::parallel::side_by_side;
 use crate::with_view;
 use bent::Bent;
 use contact::Contacts;
+use counts::Counts;
 use curved::{Facets, Optics};
 use enlarged::Source;
 use explained::Explainer;
@@ -246,6 +248,7 @@ struct Runner {
     finisher: Finisher,
     pieces: Pieces,
     source: Source,
+    counts: Counts,
 }
 
 impl Method for Runner {
@@ -254,11 +257,11 @@ impl Method for Runner {
     }
 
     fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        with_view!(map, map => self.planar_of_source(&map, job, out))
+        with_view!(map, map => self.planar_of_counts(&map, job, out))
     }
 
     fn explain(&mut self, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) -> Result<Explanation> {
-        with_view!(map, map => self.explain_of_source(&map, job, at))
+        with_view!(map, map => self.explain_of_counts(&map, job, at))
     }
 }
 

@@ -67,3 +67,40 @@ fn an_estimated_ray_is_the_same_on_each_kernel_and_any_number_of_threads() {
         }
     });
 }
+
+#[test]
+fn the_same_numbers_give_the_same_labels_as_whole_millimetres_and_as_metres() {
+    for scene in ["room:sensor=kinect_white,size=320x240", "random:sensor=azure,size=321x203"] {
+        let frame = scene.parse::<Spec>().unwrap().frame().unwrap();
+        let crate::AnyView::U16(counts) = frame.view() else { panic!("{scene} is in millimetres") };
+        for units_per_metre in [1000.0, 5000.0] {
+            let of = |metres: f64| Sensor { measure: Measure::Depth { metres }, ..frame.sensor };
+            let metres: Vec<f32> =
+                counts.rows().flatten().map(|&count| (f64::from(count) / units_per_metre) as f32).collect();
+            let map = DepthView::new(&metres, counts.width(), counts.height()).unwrap();
+            let (mut as_counts, mut as_metres) = (Detector::default(), Detector::default());
+            as_counts = as_counts.sensor(of(1.0 / units_per_metre)).curved(true);
+            as_metres = as_metres.sensor(of(1.0)).curved(true);
+            let (expected, found) = (as_counts.detect(counts).unwrap(), as_metres.detect(map).unwrap());
+            assert!(found.planes.len() > 3 && found.labels == expected.labels, "{scene}, {units_per_metre}");
+            assert_eq!(found.curved.as_ref().map(|it| &it.labels), expected.curved.as_ref().map(|it| &it.labels));
+            for (found, expected) in found.planes.iter().zip(&expected.planes) {
+                assert_eq!(found.metric, expected.metric);
+                let [fit, of_counts] = [found, expected].map(|plane| plane.fit.unwrap());
+                assert!((fit.offset * units_per_metre - of_counts.offset).abs() < 1e-6 * of_counts.offset.abs());
+            }
+        }
+        // One value that is no count, and the map is one of floats.
+        let mut floats: Vec<f32> = counts.rows().flatten().map(|&count| f32::from(count) / 1000.0).collect();
+        floats.iter_mut().filter(|value| **value > 0.0).take(1).for_each(|value| *value += 1e-5 * *value);
+        let sensor = Sensor { measure: Measure::Depth { metres: 1.0 }, ..frame.sensor };
+        let mut detector = Detector::default().sensor(sensor);
+        assert!(
+            !detector
+                .detect(DepthView::new(&floats, counts.width(), counts.height()).unwrap())
+                .unwrap()
+                .planes
+                .is_empty()
+        );
+    }
+}
