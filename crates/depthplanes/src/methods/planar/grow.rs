@@ -8,12 +8,13 @@
 //! regions that a band's edge cuts are merged as any others are (stage "merge").
 
 use super::bands::in_bands;
-use super::grid::{Cell, Grid, NONE, Place, next_free};
+use super::grid::{Cell, Grid, NONE, Place};
 use super::pyramid::{LEVELS, Pyramid, hand_down};
 use super::settle::Settling;
-use super::tiles::SIDE;
+use super::tiles::{LANES, SIDE};
 use crate::fit::Moments;
 use crate::group::{reserve_to, vectorised};
+use std::array::from_fn;
 use std::mem::take;
 use std::ops::Range;
 
@@ -26,6 +27,8 @@ const REFIT: f64 = 1.125;
 const OF_TILE: f32 = 0.5;
 /// Fewest pixels of a larger cell that starts or joins one: half of a cell may lie in a gap that it would reach over.
 const OF_CELL: f32 = 0.75;
+/// Cells of a row that are looked at together; a row has a multiple of them.
+const ABREAST: usize = LANES;
 
 /// Cells on one plane.
 #[derive(Clone, Copy, Debug)]
@@ -86,6 +89,7 @@ impl Region {
     }
 
     /// Takes a cell's pixels in; the plane stays as it is.
+    #[inline(always)]
     pub(super) fn take(&mut self, cell: &Cell) {
         self.sums.merge(&cell.moments(self.origin));
         self.variance += cell.variance * cell.n;
@@ -103,22 +107,30 @@ impl Region {
     #[inline(always)]
     fn takes(&mut self, cell: &Cell, only_flat: bool, confidence: f64) -> bool {
         let most = if only_flat { cell.most_joining() } else { cell.most_squares(confidence) };
-        let is_small = self.sums.n < SMALL;
-        if !is_small && cell.squares_about(self.abc, self.origin) > most {
+        if self.sums.n < SMALL {
+            return self.takes_anew(cell, most);
+        }
+        if cell.squares_about(self.abc, self.origin) > most {
             return false;
         }
-        let mut both = self.sums;
-        both.merge(&cell.moments(self.origin));
-        if is_small && both.fit().is_none_or(|fit| cell.squares_about(fit.abc, self.origin) > most) {
-            return false;
-        }
-        self.sums = both;
-        self.variance += cell.variance * cell.n;
-        self.smooth += cell.smooth * cell.n;
-        if is_small || self.sums.n >= REFIT * self.fitted_at {
+        self.take(cell);
+        if self.sums.n >= REFIT * self.fitted_at {
             self.refit();
         }
         true
+    }
+
+    /// Takes a cell in if its pixels lie on the plane of both.
+    #[inline(always)]
+    fn takes_anew(&mut self, cell: &Cell, most: f64) -> bool {
+        let mut both = *self;
+        both.take(cell);
+        both.refit();
+        let takes = cell.squares_about(both.abc, both.origin) <= most;
+        if takes {
+            *self = both;
+        }
+        takes
     }
 }
 
@@ -224,17 +236,16 @@ impl Area<'_> {
         if self.all.is_empty() {
             return;
         }
+        let least = fewest_joining(self.grid);
         for row in self.rows.clone() {
-            let mut next = 0;
-            while let Some(column) = self.next_free(row, next) {
-                next = column + 1;
-                let place = Place { row: row as u32, column: column as u32 };
-                if may_join(self.grid, self.grid.at(place)) {
-                    for beside in self.neighbours(place) {
-                        let id = self.region[self.at(beside)];
-                        if id != NONE && self.take(id, place) {
-                            break;
-                        }
+            for first in (0..self.grid.columns).step_by(ABREAST) {
+                let open = self.find_open(Place::new(first, row), least, is_large(self.grid));
+                let mut rest = if open == 0 { 0 } else { open & self.find_beside(Place::new(first, row)) };
+                while rest != 0 {
+                    let bit = rest & rest.wrapping_neg();
+                    rest ^= bit;
+                    if self.take_beside(Place::new(first + bit.trailing_zeros() as usize / 8, row)) {
+                        rest |= open & bit << 8; // the next cell has one beside it now
                     }
                 }
             }
@@ -249,11 +260,11 @@ impl Area<'_> {
         let least = fewest(grid);
         self.work.seeds.clear();
         for row in self.rows.clone() {
-            let mut next = 0;
-            while let Some(column) = self.next_free(row, next) {
-                next = column + 1;
-                let at = row * grid.columns + column;
-                if grid.roughness[at] <= 1.0 && grid.pixels(at) >= least {
+            for first in (0..grid.columns).step_by(ABREAST) {
+                let mut rest = self.find_open(Place::new(first, row), least, true);
+                while rest != 0 {
+                    let at = row * grid.columns + first + rest.trailing_zeros() as usize / 8;
+                    rest &= rest - 1;
                     self.work.seeds.push(u64::from(grid.scatter(at).to_bits()) << 32 | at as u64);
                 }
             }
@@ -305,9 +316,42 @@ impl Area<'_> {
         self.grid.at(place) - self.rows.start * self.grid.columns
     }
 
+    /// Which of the cells from one on have no region, so many pixels and, if asked for, are flat: a byte of 1 for each.
     #[inline(always)]
-    fn next_free(&self, row: usize, first: usize) -> Option<usize> {
-        next_free(&self.region[(row - self.rows.start) * self.grid.columns..][..self.grid.columns], first)
+    fn find_open(&self, place: Place, least: f32, only_flat: bool) -> u64 {
+        let Grid { sums, roughness, .. } = self.grid;
+        let at = self.grid.at(place);
+        let [Some(pixels), Some(roughness)] =
+            [&sums.n, roughness].map(|numbers| numbers[at..].first_chunk::<ABREAST>())
+        else {
+            return 0;
+        };
+        let region = &self.region[self.at(place)..][..ABREAST];
+        u64::from_le_bytes(from_fn(|i| {
+            u8::from((region[i] == NONE) & (pixels[i] >= least) & ((roughness[i] <= 1.0) | !only_flat))
+        }))
+    }
+
+    /// Which of the cells from one on have a cell with a region beside them; may say so at the ends of a row.
+    #[inline(always)]
+    fn find_beside(&self, place: Place) -> u64 {
+        let (at, columns) = (self.at(place), self.grid.columns);
+        let is_taken = |at: usize| u64::from(self.region.get(at).is_some_and(|&id| id != NONE));
+        let are_taken = |at: usize| {
+            let ids = self.region.get(at..).and_then(|from| from.first_chunk::<ABREAST>());
+            ids.map_or(0, |ids| u64::from_le_bytes(from_fn(|i| u8::from(ids[i] != NONE))))
+        };
+        let own = are_taken(at);
+        let left = own << 8 | is_taken(at.wrapping_sub(1));
+        let right = own >> 8 | is_taken(at + ABREAST) << 56;
+        left | right | are_taken(at.wrapping_sub(columns)) | are_taken(at + columns)
+    }
+
+    /// Gives a cell to the first region beside it on whose plane it lies.
+    #[inline(always)]
+    fn take_beside(&mut self, place: Place) -> bool {
+        let ids = self.neighbours(place).map(|beside| self.region[self.at(beside)]);
+        (0..4).any(|i| ids[i] != NONE && !ids[..i].contains(&ids[i]) && self.take(ids[i], place))
     }
 
     /// The four neighbours of a cell; at the edge itself in place of those that are missing.
@@ -326,7 +370,13 @@ fn is_large(grid: &Grid) -> bool {
 /// Whether a cell has what it takes to join a region.
 #[inline(always)]
 fn may_join(grid: &Grid, at: usize) -> bool {
-    if is_large(grid) { grid.pixels(at) >= fewest(grid) && grid.roughness[at] <= 1.0 } else { grid.pixels(at) >= 3.0 }
+    grid.pixels(at) >= fewest_joining(grid) && (!is_large(grid) || grid.roughness[at] <= 1.0)
+}
+
+/// Fewest pixels of a cell that joins a region.
+#[inline(always)]
+fn fewest_joining(grid: &Grid) -> f32 {
+    if is_large(grid) { fewest(grid) } else { 3.0 }
 }
 
 /// Fewest pixels of a cell that starts a region.

@@ -227,13 +227,13 @@ impl Part {
             let below = own + if row + 1 < *rows { *columns } else { 0 };
             let (here, below) = (&region[own..own + columns], &region[below..below + columns]);
             for first in (0..*columns).step_by(ABREAST) {
-                if is_alike(here, below, first) {
-                    continue;
-                }
-                for column in first..(first + ABREAST).min(*columns) {
+                let mut rest = u128::from_le_bytes(find_ends(here, below, first));
+                while rest != 0 {
+                    let column = first + rest.trailing_zeros() as usize / 8;
+                    rest &= rest - 1;
                     let at = own + column;
                     for (step, room) in [(1, columns - 1 - column), (*columns, rows - 1 - row)] {
-                        if region[at] != NONE && room > 0 && region[at + step] != region[at] {
+                        if room > 0 && region[at + step] != region[at] {
                             let is_gap = region[at + step] == NONE && room > 1;
                             let beside = region[if is_gap { at + 2 * step } else { at + step }];
                             if beside != NONE && beside != region[at] {
@@ -247,15 +247,17 @@ impl Part {
     }
 }
 
-/// Tiles of a row that are looked at together.
+/// Tiles of a row that are looked at together; a row has a multiple of them.
 const ABREAST: usize = 16;
 
-/// Whether each tile of [`ABREAST`] and those to the right and below are of one region.
+/// For each tile from `first` on 1 if it has a region and the one to its right or below has another or none, else 0.
 #[inline(always)]
-fn is_alike(here: &[u32], below: &[u32], first: usize) -> bool {
-    let parts = [&here[first..], here.get(first + 1..).unwrap_or(&[]), &below[first..]];
-    let [Some(own), Some(right), Some(below)] = parts.map(|part| part.first_chunk::<ABREAST>()) else { return false };
-    own.iter().zip(right).zip(below).fold(true, |all, ((own, right), below)| all & (own == right) & (own == below))
+fn find_ends(here: &[u32], below: &[u32], first: usize) -> [u8; ABREAST] {
+    let part = |row: &[u32], at: usize| *row[at..].first_chunk::<ABREAST>().expect("rows of whole parts");
+    let (own, below) = (part(here, first), part(below, first));
+    let right = here.get(first + 1..).and_then(|row| row.first_chunk::<ABREAST>()).copied();
+    let right = right.unwrap_or_else(|| std::array::from_fn(|i| own[(i + 1).min(ABREAST - 1)]));
+    std::array::from_fn(|i| u8::from((own[i] != NONE) & ((own[i] != right[i]) | (own[i] != below[i]))))
 }
 
 /// Makes one pair of those that are the same.

@@ -110,22 +110,21 @@ impl Part<'_> {
         let before = self.first * grid.columns;
         let at = grid.at(place);
         let own = region[at - before];
-        let [u, v] = grid.middle(place);
-        let far = FAR * FAR * f64::from(grid.variance[at]);
-        let q = grid.q(at);
-        let is_near = |id: u32| id != NONE && id != own && (all[id as usize].at(u, v) - q).powi(2) <= far;
-        let beside = grid.neighbours(place).map(|beside| region[grid.at(beside) - before]);
-        let mut others = beside.map(|id| if is_near(id) { id } else { NONE });
-        (1..4).for_each(|i| others[i] = if others[..i].contains(&others[i]) { NONE } else { others[i] });
-        if others == [NONE; 4] {
-            return None;
-        }
         let cell = grid.cell(place);
         let about = |id: u32| cell.squares_about(all[id as usize].abc, all[id as usize].origin);
         let (mut best, mut least) = (own, about(own) - BETTER * cell.variance);
-        for id in others.into_iter().filter(|&id| id != NONE) {
-            let squares = about(id);
-            (best, least) = if squares < least { (id, squares) } else { (best, least) };
+        if least <= cell.squares {
+            return None; // no plane leaves less than the tile's own
+        }
+        let [u, v] = cell.middle;
+        let (far, q) = (FAR * FAR * cell.variance, grid.q(at));
+        let is_near = |id: u32| (all[id as usize].at(u, v) - q).powi(2) <= far;
+        for beside in grid.neighbours(place) {
+            let id = region[grid.at(beside) - before];
+            if id != NONE && id != best && is_near(id) {
+                let squares = about(id);
+                (best, least) = if squares < least { (id, squares) } else { (best, least) };
+            }
         }
         region[at - before] = best;
         (best != own).then_some(Move { place, from: own, to: best })
