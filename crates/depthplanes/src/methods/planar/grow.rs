@@ -115,7 +115,9 @@ impl Region {
         }
         self.take(cell);
         if self.sums.n >= REFIT * self.fitted_at {
-            self.refit();
+            if let Some(fit) = self.sums.fit() {
+                self.aim(fit.abc);
+            }
         }
         true
     }
@@ -123,14 +125,22 @@ impl Region {
     /// Takes a cell in if its pixels lie on the plane of both.
     #[inline(always)]
     fn takes_anew(&mut self, cell: &Cell, most: f64) -> bool {
-        let mut both = *self;
-        both.take(cell);
-        both.refit();
-        let takes = cell.squares_about(both.abc, both.origin) <= most;
+        let mut both = self.sums;
+        both.merge(&cell.moments(self.origin));
+        let Some(fit) = both.fit() else { return false };
+        let takes = cell.squares_about(fit.abc, self.origin) <= most;
         if takes {
-            *self = both;
+            self.take(cell);
+            self.aim(fit.abc);
         }
         takes
+    }
+
+    /// Sets its plane alone: while it grows nobody asks for what else [`Region::refit`] finds.
+    #[inline(always)]
+    fn aim(&mut self, abc: [f64; 3]) {
+        self.abc = abc;
+        self.fitted_at = self.sums.n;
     }
 }
 
@@ -157,6 +167,8 @@ struct Work {
     seeds: Vec<u64>,
     /// Cells whose neighbours are still to be asked.
     queue: Vec<Place>,
+    /// For each cell 1 if it has no region and may join one, else 0.
+    open: Vec<u8>,
 }
 
 impl Regions {
@@ -203,6 +215,7 @@ impl Growth {
         reserve_to(all, regions[0].len());
         reserve_to(&mut work.seeds, regions[0].len());
         reserve_to(&mut work.queue, regions[0].len());
+        reserve_to(&mut work.open, regions[0].len());
         for level in (0..LEVELS).rev() {
             let (grid, rows) = (&pyramid.grids[level], pyramid.rows_of(band, level));
             let (finer, coarser) = regions.split_at_mut(level + 1);
@@ -210,6 +223,7 @@ impl Growth {
                 hand_down(grid, rows.start, coarser, finer[level]);
             }
             let mut area = Area { grid, confidence, rows, region: &mut *finer[level], all, work };
+            area.open();
             area.grow_on();
             area.seed();
         }
@@ -229,6 +243,19 @@ struct Area<'a> {
 }
 
 impl Area<'_> {
+    /// Finds the cells that may join a region.
+    #[inline(always)]
+    fn open(&mut self) {
+        let (grid, before) = (self.grid, self.rows.start * self.grid.columns);
+        let least = fewest_joining(grid);
+        let may_join = |pixels: f32, roughness: f32| (pixels >= least) & (!is_large(grid) | (roughness <= 1.0));
+        let cells = self.region.iter().zip(&grid.sums.n[before..]).zip(&grid.roughness[before..]);
+        self.work.open.clear();
+        self.work
+            .open
+            .extend(cells.map(|((&id, &pixels), &roughness)| u8::from((id == NONE) & may_join(pixels, roughness))));
+    }
+
     /// Lets the regions that came down from coarser cells grow on.
     #[inline(always)]
     fn grow_on(&mut self) {
@@ -236,10 +263,9 @@ impl Area<'_> {
         if self.all.is_empty() {
             return;
         }
-        let least = fewest_joining(self.grid);
         for row in self.rows.clone() {
             for first in (0..self.grid.columns).step_by(ABREAST) {
-                let open = self.find_open(Place::new(first, row), least, is_large(self.grid));
+                let open = self.open_from(Place::new(first, row));
                 let mut rest = if open == 0 { 0 } else { open & self.find_beside(Place::new(first, row)) };
                 while rest != 0 {
                     let bit = rest & rest.wrapping_neg();
@@ -261,11 +287,13 @@ impl Area<'_> {
         self.work.seeds.clear();
         for row in self.rows.clone() {
             for first in (0..grid.columns).step_by(ABREAST) {
-                let mut rest = self.find_open(Place::new(first, row), least, true);
+                let mut rest = self.open_from(Place::new(first, row));
                 while rest != 0 {
                     let at = row * grid.columns + first + rest.trailing_zeros() as usize / 8;
                     rest &= rest - 1;
-                    self.work.seeds.push(u64::from(grid.scatter(at).to_bits()) << 32 | at as u64);
+                    if grid.roughness[at] <= 1.0 && grid.pixels(at) >= least {
+                        self.work.seeds.push(u64::from(grid.scatter(at).to_bits()) << 32 | at as u64);
+                    }
                 }
             }
         }
@@ -274,10 +302,9 @@ impl Area<'_> {
             let seed = grid.place(self.work.seeds[i] as u32 as usize);
             let at = self.at(seed);
             if self.region[at] == NONE {
-                self.region[at] = self.all.len() as u32;
                 self.all.push(Region::of(&grid.cell(seed)));
                 self.work.queue.clear();
-                self.work.queue.push(seed);
+                self.give(seed, self.all.len() as u32 - 1);
                 self.spread();
             }
         }
@@ -290,9 +317,10 @@ impl Area<'_> {
         while let Some(&place) = self.work.queue.get(next) {
             next += 1;
             let id = self.region[self.at(place)];
-            for beside in self.neighbours(place) {
-                if self.region[self.at(beside)] == NONE && may_join(self.grid, self.grid.at(beside)) {
-                    self.take(id, beside);
+            let beside = self.neighbours(place);
+            for i in 0..4 {
+                if self.work.open[self.at(beside[i])] != 0 {
+                    self.take(id, beside[i]);
                 }
             }
         }
@@ -303,11 +331,17 @@ impl Area<'_> {
     fn take(&mut self, id: u32, place: Place) -> bool {
         let takes = self.all[id as usize].takes(&self.grid.cell(place), is_large(self.grid), self.confidence);
         if takes {
-            let at = self.at(place);
-            self.region[at] = id;
-            self.work.queue.push(place);
+            self.give(place, id);
         }
         takes
+    }
+
+    #[inline(always)]
+    fn give(&mut self, place: Place, id: u32) {
+        let at = self.at(place);
+        self.region[at] = id;
+        self.work.open[at] = 0;
+        self.work.queue.push(place);
     }
 
     /// Where a cell's region stands.
@@ -316,20 +350,10 @@ impl Area<'_> {
         self.grid.at(place) - self.rows.start * self.grid.columns
     }
 
-    /// Which of the cells from one on have no region, so many pixels and, if asked for, are flat: a byte of 1 for each.
+    /// Which of the cells from one on may join a region: a byte of 1 for each.
     #[inline(always)]
-    fn find_open(&self, place: Place, least: f32, only_flat: bool) -> u64 {
-        let Grid { sums, roughness, .. } = self.grid;
-        let at = self.grid.at(place);
-        let [Some(pixels), Some(roughness)] =
-            [&sums.n, roughness].map(|numbers| numbers[at..].first_chunk::<ABREAST>())
-        else {
-            return 0;
-        };
-        let region = &self.region[self.at(place)..][..ABREAST];
-        u64::from_le_bytes(from_fn(|i| {
-            u8::from((region[i] == NONE) & (pixels[i] >= least) & ((roughness[i] <= 1.0) | !only_flat))
-        }))
+    fn open_from(&self, place: Place) -> u64 {
+        u64::from_le_bytes(*self.work.open[self.at(place)..].first_chunk().expect("rows of whole parts"))
     }
 
     /// Which of the cells from one on have a cell with a region beside them; may say so at the ends of a row.
@@ -365,12 +389,6 @@ impl Area<'_> {
 #[inline(always)]
 fn is_large(grid: &Grid) -> bool {
     grid.side > SIDE
-}
-
-/// Whether a cell has what it takes to join a region.
-#[inline(always)]
-fn may_join(grid: &Grid, at: usize) -> bool {
-    grid.pixels(at) >= fewest_joining(grid) && (!is_large(grid) || grid.roughness[at] <= 1.0)
 }
 
 /// Fewest pixels of a cell that joins a region.
