@@ -121,6 +121,7 @@ impl Cell {
     }
 
     /// (u, v, q) of its own plane in its middle.
+    #[inline(always)]
     pub(super) fn origin(&self) -> [f64; 3] {
         [self.middle[0], self.middle[1], self.abc[2]]
     }

@@ -222,26 +222,26 @@ impl Part {
                 }
             }
         };
+        let mut look = |row: usize, column: usize, step: usize, room: usize| {
+            let at = row * columns + column;
+            // Beyond a tile of no region the next one counts.
+            let is_gap = region[at + step] == NONE && room > 1;
+            let beside = region[if is_gap { at + 2 * step } else { at + step }];
+            if beside != NONE && beside != region[at] {
+                touch(region[at], beside, column, row);
+            }
+        };
         for row in of {
             let own = row * columns;
             let below = own + if row + 1 < *rows { *columns } else { 0 };
             let (here, below) = (&region[own..own + columns], &region[below..below + columns]);
             for first in (0..*columns).step_by(ABREAST) {
-                let mut rest = u128::from_le_bytes(find_ends(here, below, first));
-                while rest != 0 {
-                    let column = first + rest.trailing_zeros() as usize / 8;
-                    rest &= rest - 1;
-                    let at = own + column;
-                    for (step, room) in [(1, columns - 1 - column), (*columns, rows - 1 - row)] {
-                        if room > 0 && region[at + step] != region[at] {
-                            let is_gap = region[at + step] == NONE && room > 1;
-                            let beside = region[if is_gap { at + 2 * step } else { at + step }];
-                            if beside != NONE && beside != region[at] {
-                                touch(region[at], beside, column, row);
-                            }
-                        }
-                    }
-                }
+                let [at_right, at_bottom] = find_ends(here, below, first);
+                each_one(at_right, |i| {
+                    let column = first + i;
+                    look(row, column, 1, columns - 1 - column);
+                });
+                each_one(at_bottom, |i| look(row, first + i, *columns, rows - 1 - row));
             }
         }
     }
@@ -250,14 +250,24 @@ impl Part {
 /// Tiles of a row that are looked at together; a row has a multiple of them.
 const ABREAST: usize = 16;
 
-/// For each tile from `first` on 1 if it has a region and the one to its right or below has another or none, else 0.
+/// For each tile from `first` on 1 if it has a region and the one to its right another or none, else 0; the same below.
 #[inline(always)]
-fn find_ends(here: &[u32], below: &[u32], first: usize) -> [u8; ABREAST] {
+fn find_ends(here: &[u32], below: &[u32], first: usize) -> [[u8; ABREAST]; 2] {
     let part = |row: &[u32], at: usize| *row[at..].first_chunk::<ABREAST>().expect("rows of whole parts");
     let (own, below) = (part(here, first), part(below, first));
     let right = here.get(first + 1..).and_then(|row| row.first_chunk::<ABREAST>()).copied();
     let right = right.unwrap_or_else(|| std::array::from_fn(|i| own[(i + 1).min(ABREAST - 1)]));
-    std::array::from_fn(|i| u8::from((own[i] != NONE) & ((own[i] != right[i]) | (own[i] != below[i]))))
+    [right, below].map(|beside| std::array::from_fn(|i| u8::from((own[i] != NONE) & (own[i] != beside[i]))))
+}
+
+/// Calls `visit` with the place of each that is 1.
+#[inline(always)]
+fn each_one(ones: [u8; ABREAST], mut visit: impl FnMut(usize)) {
+    let mut rest = u128::from_le_bytes(ones);
+    while rest != 0 {
+        visit(rest.trailing_zeros() as usize / 8);
+        rest &= rest - 1;
+    }
 }
 
 /// What pairs are sorted by.
