@@ -70,6 +70,7 @@ impl Moments {
     }
 
     /// Adds the sums of other points about the same origin.
+    #[inline]
     pub fn merge(&mut self, other: &Moments) {
         self.n += other.n;
         self.u += other.u;
@@ -84,6 +85,7 @@ impl Moments {
     }
 
     /// Takes away the sums of some of the points about the same origin.
+    #[inline]
     pub fn remove(&mut self, other: &Moments) {
         self.n -= other.n;
         self.u -= other.u;
@@ -124,6 +126,7 @@ impl Moments {
     }
 
     /// The least-squares plane about the same origin; `None` if the points lie on a line.
+    #[inline(always)] // what of it is not asked for is not computed
     pub fn fit(&self) -> Option<AffineFit> {
         let n = self.n;
         let central = |product: f64, x: f64, y: f64| product - x * y / n;

@@ -70,7 +70,7 @@ impl Bows {
                 each_run(ids, 0, |id, columns| {
                     if levels[id as usize] == OPEN {
                         let region = &all[id as usize];
-                        sums[id as usize].add_run(grid, row, columns, region, region, &Frame::of(region));
+                        sums[id as usize].add_run(grid, row, columns, region, None, &Frame::of(region));
                     }
                 });
             }

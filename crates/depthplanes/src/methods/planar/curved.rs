@@ -282,7 +282,7 @@ impl Scene<'_> {
                     let cell = grid.cell(Place { row: row as u32, column: column as u32 });
                     let off = cell.residual_about(plane.abc, plane.origin) / cell.n;
                     if is_own || off * off <= NEAR * NEAR * cell.variance {
-                        sums[usize::from(is_own)].add_run(grid, row, column..column + 1, plane, plane, &frame);
+                        sums[usize::from(is_own)].add_run(grid, row, column..column + 1, plane, None, &frame);
                     }
                 }
             }
@@ -302,7 +302,7 @@ impl Scene<'_> {
             let part = row * grid.columns + around.first[0]..row * grid.columns + around.last[0] + 1;
             each_run(&grid.region[part], around.first[0], |id, columns| {
                 if id == small || id == large {
-                    let own = &self.all[id as usize];
+                    let own = Some(&self.all[id as usize]);
                     sums[usize::from(id == small)].add_run(grid, row, columns, plane, own, &frame);
                 }
             });

@@ -100,6 +100,7 @@ impl Cell {
     }
 
     /// Its pixels' sums about (u, v, q) = `origin`.
+    #[inline(always)]
     pub(super) fn moments(&self, [u0, v0, q0]: [f64; 3]) -> Moments {
         let &Cell { middle: [mu, mv], n, u, v, uu, uv, vv, abc: [a, b, c], squares, .. } = self;
         let (uq, vq) = (a * uu + b * uv, a * uv + b * vv);
@@ -120,6 +121,7 @@ impl Cell {
     }
 
     /// (u, v, q) of its own plane in its middle.
+    #[inline(always)]
     pub(super) fn origin(&self) -> [f64; 3] {
         [self.middle[0], self.middle[1], self.abc[2]]
     }
@@ -237,16 +239,6 @@ impl Grid {
             Place { column, row: (row + 1).min(last) },
         ]
     }
-}
-
-/// The next column of a row of regions, from `first` on, whose cell has none.
-#[inline(always)]
-pub(super) fn next_free(row: &[u32], first: usize) -> Option<usize> {
-    // Most cells have one: eight are passed over at a time.
-    let (eights, _) = row[first..].as_chunks::<8>();
-    let is_taken = |cells: &[u32; 8]| cells.iter().fold(true, |all, &id| all & (id != NONE));
-    let passed = first + 8 * eights.iter().position(|cells| !is_taken(cells)).unwrap_or(eights.len());
-    Some(passed + row[passed..].iter().position(|&id| id == NONE)?)
 }
 
 /// Cells whose regions are compared together.

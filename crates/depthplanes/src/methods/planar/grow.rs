@@ -8,12 +8,13 @@
 //! regions that a band's edge cuts are merged as any others are (stage "merge").
 
 use super::bands::in_bands;
-use super::grid::{Cell, Grid, NONE, Place, next_free};
+use super::grid::{Cell, Grid, NONE, Place};
 use super::pyramid::{LEVELS, Pyramid, hand_down};
 use super::settle::Settling;
-use super::tiles::SIDE;
+use super::tiles::{LANES, SIDE};
 use crate::fit::Moments;
 use crate::group::{reserve_to, vectorised};
+use std::array::from_fn;
 use std::mem::take;
 use std::ops::Range;
 
@@ -26,6 +27,8 @@ const REFIT: f64 = 1.125;
 const OF_TILE: f32 = 0.5;
 /// Fewest pixels of a larger cell that starts or joins one: half of a cell may lie in a gap that it would reach over.
 const OF_CELL: f32 = 0.75;
+/// Cells of a row that are looked at together; a row has a multiple of them.
+const ABREAST: usize = LANES;
 
 /// Cells on one plane.
 #[derive(Clone, Copy, Debug)]
@@ -93,6 +96,7 @@ impl Region {
     }
 
     /// Takes a cell's pixels in; the plane stays as it is.
+    #[inline(always)]
     pub(super) fn take(&mut self, cell: &Cell) {
         self.sums.merge(&cell.moments(self.origin));
         self.variance += cell.variance * cell.n;
@@ -110,22 +114,40 @@ impl Region {
     #[inline(always)]
     fn takes(&mut self, cell: &Cell, only_flat: bool, confidence: f64) -> bool {
         let most = if only_flat { cell.most_joining() } else { cell.most_squares(confidence) };
-        let is_small = self.sums.n < SMALL;
-        if !is_small && cell.squares_about(self.abc, self.origin) > most {
+        if self.sums.n < SMALL {
+            return self.takes_anew(cell, most);
+        }
+        if cell.squares_about(self.abc, self.origin) > most {
             return false;
         }
-        let mut both = self.sums;
-        both.merge(&cell.moments(self.origin));
-        if is_small && both.fit().is_none_or(|fit| cell.squares_about(fit.abc, self.origin) > most) {
-            return false;
-        }
-        self.sums = both;
-        self.variance += cell.variance * cell.n;
-        self.smooth += cell.smooth * cell.n;
-        if is_small || self.sums.n >= REFIT * self.fitted_at {
-            self.refit();
+        self.take(cell);
+        if self.sums.n >= REFIT * self.fitted_at {
+            if let Some(fit) = self.sums.fit() {
+                self.aim(fit.abc);
+            }
         }
         true
+    }
+
+    /// Takes a cell in if its pixels lie on the plane of both.
+    #[inline(always)]
+    fn takes_anew(&mut self, cell: &Cell, most: f64) -> bool {
+        let mut both = self.sums;
+        both.merge(&cell.moments(self.origin));
+        let Some(fit) = both.fit() else { return false };
+        let takes = cell.squares_about(fit.abc, self.origin) <= most;
+        if takes {
+            self.take(cell);
+            self.aim(fit.abc);
+        }
+        takes
+    }
+
+    /// Sets its plane alone: while it grows nobody asks for what else [`Region::refit`] finds.
+    #[inline(always)]
+    fn aim(&mut self, abc: [f64; 3]) {
+        self.abc = abc;
+        self.fitted_at = self.sums.n;
     }
 }
 
@@ -152,6 +174,8 @@ struct Work {
     seeds: Vec<u64>,
     /// Cells whose neighbours are still to be asked.
     queue: Vec<Place>,
+    /// For each cell 1 if it has no region and may join one, else 0.
+    open: Vec<u8>,
 }
 
 impl Regions {
@@ -198,6 +222,7 @@ impl Growth {
         reserve_to(all, regions[0].len());
         reserve_to(&mut work.seeds, regions[0].len());
         reserve_to(&mut work.queue, regions[0].len());
+        reserve_to(&mut work.open, regions[0].len());
         for level in (0..LEVELS).rev() {
             let (grid, rows) = (&pyramid.grids[level], pyramid.rows_of(band, level));
             let (finer, coarser) = regions.split_at_mut(level + 1);
@@ -205,6 +230,7 @@ impl Growth {
                 hand_down(grid, rows.start, coarser, finer[level]);
             }
             let mut area = Area { grid, confidence, rows, region: &mut *finer[level], all, work };
+            area.open();
             area.grow_on();
             area.seed();
         }
@@ -224,6 +250,19 @@ struct Area<'a> {
 }
 
 impl Area<'_> {
+    /// Finds the cells that may join a region.
+    #[inline(always)]
+    fn open(&mut self) {
+        let (grid, before) = (self.grid, self.rows.start * self.grid.columns);
+        let least = fewest_joining(grid);
+        let may_join = |pixels: f32, roughness: f32| (pixels >= least) & (!is_large(grid) | (roughness <= 1.0));
+        let cells = self.region.iter().zip(&grid.sums.n[before..]).zip(&grid.roughness[before..]);
+        self.work.open.clear();
+        self.work
+            .open
+            .extend(cells.map(|((&id, &pixels), &roughness)| u8::from((id == NONE) & may_join(pixels, roughness))));
+    }
+
     /// Lets the regions that came down from coarser cells grow on.
     #[inline(always)]
     fn grow_on(&mut self) {
@@ -232,16 +271,14 @@ impl Area<'_> {
             return;
         }
         for row in self.rows.clone() {
-            let mut next = 0;
-            while let Some(column) = self.next_free(row, next) {
-                next = column + 1;
-                let place = Place { row: row as u32, column: column as u32 };
-                if may_join(self.grid, self.grid.at(place)) {
-                    for beside in self.neighbours(place) {
-                        let id = self.region[self.at(beside)];
-                        if id != NONE && self.take(id, place) {
-                            break;
-                        }
+            for first in (0..self.grid.columns).step_by(ABREAST) {
+                let open = self.open_from(Place::new(first, row));
+                let mut rest = if open == 0 { 0 } else { open & self.find_beside(Place::new(first, row)) };
+                while rest != 0 {
+                    let bit = rest & rest.wrapping_neg();
+                    rest ^= bit;
+                    if self.take_beside(Place::new(first + bit.trailing_zeros() as usize / 8, row)) {
+                        rest |= open & bit << 8; // the next cell has one beside it now
                     }
                 }
             }
@@ -256,12 +293,14 @@ impl Area<'_> {
         let least = fewest(grid);
         self.work.seeds.clear();
         for row in self.rows.clone() {
-            let mut next = 0;
-            while let Some(column) = self.next_free(row, next) {
-                next = column + 1;
-                let at = row * grid.columns + column;
-                if grid.roughness[at] <= 1.0 && grid.pixels(at) >= least {
-                    self.work.seeds.push(u64::from(grid.scatter(at).to_bits()) << 32 | at as u64);
+            for first in (0..grid.columns).step_by(ABREAST) {
+                let mut rest = self.open_from(Place::new(first, row));
+                while rest != 0 {
+                    let at = row * grid.columns + first + rest.trailing_zeros() as usize / 8;
+                    rest &= rest - 1;
+                    if grid.roughness[at] <= 1.0 && grid.pixels(at) >= least {
+                        self.work.seeds.push(u64::from(grid.scatter(at).to_bits()) << 32 | at as u64);
+                    }
                 }
             }
         }
@@ -270,10 +309,9 @@ impl Area<'_> {
             let seed = grid.place(self.work.seeds[i] as u32 as usize);
             let at = self.at(seed);
             if self.region[at] == NONE {
-                self.region[at] = self.all.len() as u32;
                 self.all.push(Region::of(&grid.cell(seed)));
                 self.work.queue.clear();
-                self.work.queue.push(seed);
+                self.give(seed, self.all.len() as u32 - 1);
                 self.spread();
             }
         }
@@ -286,9 +324,10 @@ impl Area<'_> {
         while let Some(&place) = self.work.queue.get(next) {
             next += 1;
             let id = self.region[self.at(place)];
-            for beside in self.neighbours(place) {
-                if self.region[self.at(beside)] == NONE && may_join(self.grid, self.grid.at(beside)) {
-                    self.take(id, beside);
+            let beside = self.neighbours(place);
+            for i in 0..4 {
+                if self.work.open[self.at(beside[i])] != 0 {
+                    self.take(id, beside[i]);
                 }
             }
         }
@@ -299,11 +338,17 @@ impl Area<'_> {
     fn take(&mut self, id: u32, place: Place) -> bool {
         let takes = self.all[id as usize].takes(&self.grid.cell(place), is_large(self.grid), self.confidence);
         if takes {
-            let at = self.at(place);
-            self.region[at] = id;
-            self.work.queue.push(place);
+            self.give(place, id);
         }
         takes
+    }
+
+    #[inline(always)]
+    fn give(&mut self, place: Place, id: u32) {
+        let at = self.at(place);
+        self.region[at] = id;
+        self.work.open[at] = 0;
+        self.work.queue.push(place);
     }
 
     /// Where a cell's region stands.
@@ -312,9 +357,32 @@ impl Area<'_> {
         self.grid.at(place) - self.rows.start * self.grid.columns
     }
 
+    /// Which of the cells from one on may join a region: a byte of 1 for each.
     #[inline(always)]
-    fn next_free(&self, row: usize, first: usize) -> Option<usize> {
-        next_free(&self.region[(row - self.rows.start) * self.grid.columns..][..self.grid.columns], first)
+    fn open_from(&self, place: Place) -> u64 {
+        u64::from_le_bytes(*self.work.open[self.at(place)..].first_chunk().expect("rows of whole parts"))
+    }
+
+    /// Which of the cells from one on have a cell with a region beside them; may say so at the ends of a row.
+    #[inline(always)]
+    fn find_beside(&self, place: Place) -> u64 {
+        let (at, columns) = (self.at(place), self.grid.columns);
+        let is_taken = |at: usize| u64::from(self.region.get(at).is_some_and(|&id| id != NONE));
+        let are_taken = |at: usize| {
+            let ids = self.region.get(at..).and_then(|from| from.first_chunk::<ABREAST>());
+            ids.map_or(0, |ids| u64::from_le_bytes(from_fn(|i| u8::from(ids[i] != NONE))))
+        };
+        let own = are_taken(at);
+        let left = own << 8 | is_taken(at.wrapping_sub(1));
+        let right = own >> 8 | is_taken(at + ABREAST) << 56;
+        left | right | are_taken(at.wrapping_sub(columns)) | are_taken(at + columns)
+    }
+
+    /// Gives a cell to the first region beside it on whose plane it lies.
+    #[inline(always)]
+    fn take_beside(&mut self, place: Place) -> bool {
+        let ids = self.neighbours(place).map(|beside| self.region[self.at(beside)]);
+        (0..4).any(|i| ids[i] != NONE && !ids[..i].contains(&ids[i]) && self.take(ids[i], place))
     }
 
     /// The four neighbours of a cell; at the edge itself in place of those that are missing.
@@ -330,10 +398,10 @@ fn is_large(grid: &Grid) -> bool {
     grid.side > SIDE
 }
 
-/// Whether a cell has what it takes to join a region.
+/// Fewest pixels of a cell that joins a region.
 #[inline(always)]
-fn may_join(grid: &Grid, at: usize) -> bool {
-    if is_large(grid) { grid.pixels(at) >= fewest(grid) && grid.roughness[at] <= 1.0 } else { grid.pixels(at) >= 3.0 }
+fn fewest_joining(grid: &Grid) -> f32 {
+    if is_large(grid) { fewest(grid) } else { 3.0 }
 }
 
 /// Fewest pixels of a cell that starts a region.

@@ -23,7 +23,7 @@ pub(super) struct Pair {
     pub(super) contacts: f64,
     /// Sum over them of (u, v).
     at: [f64; 2],
-    /// What merging costs ([`bend`]); NaN if it is not known.
+    /// What merging costs ([`bend`]), infinite if they are not one; NaN if it is not known.
     cost: f64,
 }
 
@@ -36,7 +36,6 @@ impl Pair {
     fn add(&mut self, other: &Pair) {
         self.contacts += other.contacts;
         self.at = [0, 1].map(|i| self.at[i] + other.at[i]);
-        self.cost = if self.cost.is_nan() { other.cost } else { self.cost };
     }
 }
 
@@ -54,6 +53,8 @@ const ROWS: usize = 64;
 #[derive(Debug, Default)]
 pub(super) struct Merger {
     pub(super) pairs: Vec<Pair>,
+    /// Those of which a region has just become another.
+    renamed: Vec<Pair>,
     parts: Vec<Part>,
     /// For each region the one that it becomes.
     into: Vec<u32>,
@@ -74,13 +75,16 @@ impl Merger {
     /// became part of another are still listed. On as many threads.
     pub(super) fn merge(&mut self, grid: &Grid, regions: &mut Regions, rays: &Rays, threads: usize) {
         reserve_to(&mut self.pairs, 4 * grid.len());
+        reserve_to(&mut self.renamed, 4 * grid.len());
         for memory in [&mut self.into, &mut self.order] {
             reserve_to(memory, 4 * grid.len());
         }
         reserve_to(&mut self.has_changed, grid.len());
         self.into.extend(0..regions.all.len() as u32);
         self.list_pairs(grid, threads);
+        weigh(&mut self.pairs, &regions.all, rays, threads);
         while self.merge_best(&mut regions.all, rays, threads) {}
+        self.pairs.sort_unstable_by_key(key);
     }
 
     /// Joins more of the listed pairs, since the noise is known to be larger.
@@ -134,22 +138,16 @@ impl Merger {
 
     /// Merges the pairs that cost least, each region once; whether there were any.
     fn merge_best(&mut self, all: &mut [Region], rays: &Rays, threads: usize) -> bool {
-        let Merger { pairs, into, has_changed, order, .. } = self;
-        let bend_all = |pairs: &mut [Pair]| {
-            for pair in pairs.iter_mut().filter(|pair| pair.cost.is_nan()) {
-                let [a, b] = pair.ids.map(|id| &all[id as usize]);
-                let cost = bend(a, b);
-                let is_one = cost <= 1.0 || (cost <= BOWED_MERGE && goes_on(a, b, pair.middle(), rays));
-                pair.cost = if is_one { cost } else { f64::INFINITY };
-            }
-        };
-        in_parts(threads, &mut pairs[..], bend_all, |(), ()| ());
+        let Merger { pairs, renamed, into, has_changed, order, .. } = self;
         order.clear();
         order.extend((0..pairs.len() as u32).filter(|&at| pairs[at as usize].cost.is_finite()));
         if order.is_empty() {
             return false;
         }
-        order.sort_unstable_by(|&x, &y| pairs[x as usize].cost.total_cmp(&pairs[y as usize].cost).then(x.cmp(&y)));
+        order.sort_unstable_by(|&x, &y| {
+            let [x, y] = [x, y].map(|at| &pairs[at as usize]);
+            x.cost.total_cmp(&y.cost).then(key(x).cmp(&key(y)))
+        });
         has_changed.clear();
         has_changed.resize(all.len(), false);
         for &at in order.iter() {
@@ -162,14 +160,16 @@ impl Merger {
                 has_changed[b] = true;
             }
         }
-        for pair in pairs.iter_mut() {
-            if pair.ids.iter().any(|&id| has_changed[id as usize]) {
-                let [a, b] = pair.ids.map(|id| into[id as usize]);
-                (pair.ids, pair.cost) = ([a.min(b), a.max(b)], f64::NAN);
-            }
+        renamed.clear();
+        renamed.extend(pairs.extract_if(.., |pair| pair.ids.iter().any(|&id| has_changed[id as usize])));
+        for pair in renamed.iter_mut() {
+            let [a, b] = pair.ids.map(|id| into[id as usize]);
+            pair.ids = [a.min(b), a.max(b)];
         }
-        pairs.retain(|pair| pair.ids[0] != pair.ids[1]);
-        unite(pairs);
+        renamed.retain(|pair| pair.ids[0] != pair.ids[1]);
+        unite(renamed);
+        weigh(renamed, all, rays, threads);
+        pairs.append(renamed);
         true
     }
 
@@ -228,45 +228,81 @@ impl Part {
                 }
             }
         };
+        let mut look = |row: usize, column: usize, step: usize, room: usize| {
+            let at = row * columns + column;
+            // Beyond a tile of no region the next one counts.
+            let is_gap = region[at + step] == NONE && room > 1;
+            let beside = region[if is_gap { at + 2 * step } else { at + step }];
+            if beside != NONE && beside != region[at] {
+                touch(region[at], beside, column, row);
+            }
+        };
         for row in of {
             let own = row * columns;
             let below = own + if row + 1 < *rows { *columns } else { 0 };
             let (here, below) = (&region[own..own + columns], &region[below..below + columns]);
             for first in (0..*columns).step_by(ABREAST) {
-                if is_alike(here, below, first) {
-                    continue;
-                }
-                for column in first..(first + ABREAST).min(*columns) {
-                    let at = own + column;
-                    for (step, room) in [(1, columns - 1 - column), (*columns, rows - 1 - row)] {
-                        if region[at] != NONE && room > 0 && region[at + step] != region[at] {
-                            let is_gap = region[at + step] == NONE && room > 1;
-                            let beside = region[if is_gap { at + 2 * step } else { at + step }];
-                            if beside != NONE && beside != region[at] {
-                                touch(region[at], beside, column, row);
-                            }
-                        }
-                    }
-                }
+                let [at_right, at_bottom] = find_ends(here, below, first);
+                each_one(at_right, |i| {
+                    let column = first + i;
+                    look(row, column, 1, columns - 1 - column);
+                });
+                each_one(at_bottom, |i| look(row, first + i, *columns, rows - 1 - row));
             }
         }
     }
 }
 
-/// Tiles of a row that are looked at together.
+/// Tiles of a row that are looked at together; a row has a multiple of them.
 const ABREAST: usize = 16;
 
-/// Whether each tile of [`ABREAST`] and those to the right and below are of one region.
+/// For each tile from `first` on 1 if it has a region and the one to its right another or none, else 0; the same below.
 #[inline(always)]
-fn is_alike(here: &[u32], below: &[u32], first: usize) -> bool {
-    let parts = [&here[first..], here.get(first + 1..).unwrap_or(&[]), &below[first..]];
-    let [Some(own), Some(right), Some(below)] = parts.map(|part| part.first_chunk::<ABREAST>()) else { return false };
-    own.iter().zip(right).zip(below).fold(true, |all, ((own, right), below)| all & (own == right) & (own == below))
+fn find_ends(here: &[u32], below: &[u32], first: usize) -> [[u8; ABREAST]; 2] {
+    let part = |row: &[u32], at: usize| *row[at..].first_chunk::<ABREAST>().expect("rows of whole parts");
+    let (own, below) = (part(here, first), part(below, first));
+    let right = here.get(first + 1..).and_then(|row| row.first_chunk::<ABREAST>()).copied();
+    let right = right.unwrap_or_else(|| std::array::from_fn(|i| own[(i + 1).min(ABREAST - 1)]));
+    [right, below].map(|beside| std::array::from_fn(|i| u8::from((own[i] != NONE) & (own[i] != beside[i]))))
+}
+
+/// Calls `visit` with the place of each that is 1.
+#[inline(always)]
+fn each_one(ones: [u8; ABREAST], mut visit: impl FnMut(usize)) {
+    let mut rest = u128::from_le_bytes(ones);
+    while rest != 0 {
+        visit(rest.trailing_zeros() as usize / 8);
+        rest &= rest - 1;
+    }
+}
+
+/// What pairs are sorted by.
+fn key(&Pair { ids: [a, b], .. }: &Pair) -> u64 {
+    u64::from(a) << 32 | u64::from(b)
+}
+
+/// Finds what merging each pair costs, on as many threads.
+fn weigh(pairs: &mut [Pair], all: &[Region], rays: &Rays, threads: usize) {
+    let weigh = |pairs: &mut [Pair]| {
+        for pair in pairs {
+            let [a, b] = pair.ids.map(|id| &all[id as usize]);
+            let cost = bend(a, b);
+            let is_one = cost <= 1.0 || (cost <= BOWED_MERGE && goes_on(a, b, pair.middle(), rays));
+            pair.cost = if is_one { cost } else { f64::INFINITY };
+        }
+    };
+    let weigh = |pairs: &mut [Pair]| {
+        vectorised(
+            #[inline(always)]
+            || weigh(pairs),
+        )
+    };
+    in_parts(threads, pairs, weigh, |(), ()| ());
 }
 
 /// Makes one pair of those that are the same.
 fn unite(pairs: &mut Vec<Pair>) {
-    pairs.sort_unstable_by_key(|&Pair { ids: [a, b], .. }| u64::from(a) << 32 | u64::from(b));
+    pairs.sort_unstable_by_key(key);
     pairs.dedup_by(|next, pair| {
         let same = next.ids == pair.ids;
         if same {
@@ -286,6 +322,7 @@ impl Region {
     }
 
     /// Sums of another region about this one's origin.
+    #[inline(always)]
     pub(super) fn sums_of(&self, other: &Region) -> Moments {
         let [u, v, q] = self.origin;
         other.sums.moved([other.origin[0] - u, other.origin[1] - v, other.origin[2] - q])
@@ -306,6 +343,7 @@ fn goes_on(a: &Region, b: &Region, [u, v]: [f64; 2], rays: &Rays) -> bool {
 }
 
 /// What a joint plane adds to the squares of the region that it suits less, as a multiple of what may be ([`MERGE`]).
+#[inline(always)]
 pub(super) fn bend(a: &Region, b: &Region) -> f64 {
     let theirs = a.sums_of(b);
     let mut both = a.sums;

@@ -71,12 +71,20 @@ impl Sums {
         both
     }
 
+    #[inline(always)]
     fn matrix(&self) -> [[f64; 6]; 6] {
-        TERMS.map(|[j, i]| TERMS.map(|[l, k]| self.powers[j + l][i + k]))
+        let mut matrix = [[0.0; 6]; 6];
+        for (row, [j, i]) in matrix.iter_mut().zip(TERMS) {
+            row.iter_mut().zip(TERMS).for_each(|(sum, [l, k])| *sum = self.powers[j + l][i + k]);
+        }
+        matrix
     }
 
+    #[inline(always)]
     fn right(&self) -> [f64; 6] {
-        TERMS.map(|[j, i]| self.right[j][i])
+        let mut right = [0.0; 6];
+        right.iter_mut().zip(TERMS).for_each(|(sum, [j, i])| *sum = self.right[j][i]);
+        right
     }
 
     /// The normal equations of the first N terms, those before a term taken out of it: what a term explains beyond them
@@ -153,14 +161,14 @@ impl Frame {
 }
 
 impl Sums {
-    /// Adds a run of cells: their mean residuals about `plane`, and how far off their own region's is.
+    /// Adds a run of cells: their mean residuals about `plane`, and how far off their own region's is if that is asked for.
     pub(super) fn add_run(
         &mut self,
         grid: &Grid,
         row: usize,
         columns: Range<usize>,
         plane: &Region,
-        own: &Region,
+        own: Option<&Region>,
         frame: &Frame,
     ) {
         let (mut powers, mut right) = ([0.0; 5], [0.0; 3]);
@@ -181,8 +189,10 @@ impl Sums {
             self.pixels += cell.n;
             self.smooth += weight * cell.smooth;
             self.cells += 1.0;
-            let by_own = cell.residual_about(own.abc, own.origin);
-            self.by_planes += by_own * by_own * per_variance * per_n;
+            if let Some(own) = own {
+                let by_own = cell.residual_about(own.abc, own.origin);
+                self.by_planes += by_own * by_own * per_variance * per_n;
+            }
         }
         self.add_row(y, powers, right);
     }

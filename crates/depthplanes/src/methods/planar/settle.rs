@@ -6,7 +6,7 @@
 //! a tile is.
 
 use super::bands::in_bands;
-use super::grid::{Grid, NONE, Place};
+use super::grid::{Cell, Grid, NONE, Place};
 use super::grow::{Region, Regions};
 use super::pyramid::Pyramid;
 use crate::group::{reserve_to, vectorised};
@@ -110,25 +110,43 @@ impl Part<'_> {
         let before = self.first * grid.columns;
         let at = grid.at(place);
         let own = region[at - before];
-        let [u, v] = grid.middle(place);
-        let far = FAR * FAR * f64::from(grid.variance[at]);
-        let q = grid.q(at);
-        let is_near = |id: u32| id != NONE && id != own && (all[id as usize].at(u, v) - q).powi(2) <= far;
         let beside = grid.neighbours(place).map(|beside| region[grid.at(beside) - before]);
-        let mut others = beside.map(|id| if is_near(id) { id } else { NONE });
-        (1..4).for_each(|i| others[i] = if others[..i].contains(&others[i]) { NONE } else { others[i] });
-        if others == [NONE; 4] {
+        let is_other = |id: u32| (id != own) & (id != NONE);
+        // Most tiles have one other region beside them: it is found and asked without branches that go either way.
+        let other = beside.iter().rfold(NONE, |found, &id| if is_other(id) { id } else { found });
+        if other == NONE {
             return None;
         }
         let cell = grid.cell(place);
-        let about = |id: u32| cell.squares_about(all[id as usize].abc, all[id as usize].origin);
-        let (mut best, mut least) = (own, about(own) - BETTER * cell.variance);
-        for id in others.into_iter().filter(|&id| id != NONE) {
-            let squares = about(id);
-            (best, least) = if squares < least { (id, squares) } else { (best, least) };
+        let mut best = (own, all[own as usize].squares_of(&cell) - BETTER * cell.variance);
+        best = better(best, &cell, other, all);
+        let is_another = |id: u32| is_other(id) & (id != other);
+        if beside.iter().fold(false, |any, &id| any | is_another(id)) {
+            best = beside.into_iter().filter(|&id| is_another(id)).fold(best, |best, id| better(best, &cell, id, all));
         }
-        region[at - before] = best;
-        (best != own).then_some(Move { place, from: own, to: best })
+        let to = best.0;
+        if to == own {
+            return None;
+        }
+        region[at - before] = to;
+        Some(Move { place, from: own, to })
+    }
+}
+
+/// The region that leaves less of a cell's squares, and how much: the best so far, or one whose plane is near.
+#[inline(always)]
+fn better(best: (u32, f64), cell: &Cell, id: u32, all: &[Region]) -> (u32, f64) {
+    let region = &all[id as usize];
+    let ([u, v], squares) = (cell.middle, region.squares_of(cell));
+    let is_near = (region.at(u, v) - cell.origin()[2]).powi(2) <= FAR * FAR * cell.variance;
+    if is_near & (squares < best.1) { (id, squares) } else { best }
+}
+
+impl Region {
+    /// Sum of a cell's squared residuals about its plane.
+    #[inline(always)]
+    fn squares_of(&self, cell: &Cell) -> f64 {
+        cell.squares_about(self.abc, self.origin)
     }
 }
 
