@@ -181,11 +181,11 @@ impl Planar {
             stated(space, self.noise, self.noise_growth).or(sensor.noise).and_then(model).unwrap_or_else(|| {
                 model(estimated(shown.white)).expect("an estimate is of the map's own kind").of_scatter()
             });
-        let smooth = stated(space, self.smooth_noise, self.smooth_noise_growth)
+        let stated_smooth = stated(space, self.smooth_noise, self.smooth_noise_growth)
             .or(sensor.smooth_noise)
-            .filter(|&noise| model(noise).is_some())
-            .unwrap_or_else(|| estimated(shown.smooth));
-        let smooth = smooth.times(scale);
+            .filter(|&noise| model(noise).is_some());
+        let white = if stated_smooth.is_none() { white.of_smooth_shown() } else { white };
+        let smooth = stated_smooth.unwrap_or_else(|| estimated(shown.smooth)).times(scale);
         match self.ray {
             0.0 => {
                 let [ray, smooth_ray] = [shown.white, shown.smooth].map(|factor| scale * factor * shown.ray);
