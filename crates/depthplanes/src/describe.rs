@@ -4,6 +4,7 @@
 //! over the labelled pixels only: the first sums, the second, where a camera is known, measures
 //! distances from the fitted planes. Both are taken in parts of the map that threads share.
 
+mod covariance;
 mod distances;
 mod parts;
 mod tally;
@@ -162,6 +163,8 @@ impl Describer {
             }
             _ => (),
         }
+        let noise = seen.noise.map(|noise| self.as_residuals_show(noise, sensor));
+        let seen = &Seen { noise: noise.as_ref(), ..*seen };
         planes.extend((1..).zip(&self.tallies).map(|(label, tally)| {
             let fit =
                 tally.fit.map(|fit| MapFit { gradient: [fit.abc[0], fit.abc[1]], offset: fit.abc[2], rms: fit.rms });
@@ -176,6 +179,17 @@ impl Describer {
                 metric: metric(),
             }
         }));
+    }
+
+    /// The noise, a smooth part that was estimated being as large as the residuals of all planes together show it: the
+    /// estimate from neighbouring cells misses what is smooth over far more than these.
+    fn as_residuals_show(&self, noise: &NoiseModel, sensor: &Sensor) -> NoiseModel {
+        if !noise.is_smooth_shown() {
+            return *noise;
+        }
+        let squares = self.tallies.iter().filter_map(|tally| tally.known(sensor)?.smooth_squares(noise));
+        let [shown, expected] = squares.fold([0.0; 2], |sum, squares| [0, 1].map(|i| sum[i] + squares[i]));
+        if expected > 0.0 { noise.smoother((shown.max(0.0) / expected).sqrt()) } else { *noise }
     }
 
     /// Sums what the records need of every pixel's depth; `add` adds those of a run and its plane.

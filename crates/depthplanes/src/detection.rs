@@ -155,9 +155,9 @@ pub struct MetricPlane {
 /// What a covariance was propagated from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CovarianceSource {
-    /// The noise of the sensor, stated or estimated, and the rounding of its values. If the residuals have a
-    /// significantly larger variance than that (three standard deviations of a chi-squared), the covariance is larger
-    /// by the same factor.
+    /// The noise of the sensor, stated or estimated, its white part and its smooth one, and the rounding of its values. If
+    /// the residuals have a significantly larger variance than that (three standard deviations of a chi-squared), the
+    /// covariance is larger by what they show.
     Noise,
     /// The residuals of the fit, as independent errors: the noise of the sensor is not known.
     Residuals,

@@ -119,6 +119,8 @@ pub struct NoiseModel {
     /// The smooth part of the error, and what of the ray's part is smooth.
     smooth: SensorNoise,
     smooth_ray: f64,
+    /// Whether the smooth part is what a map shows.
+    is_smooth_shown: bool,
 }
 
 /// What rounding to steps may do, in steps, to all pixels of a small patch at once: on a slow ramp they lie on one
@@ -151,7 +153,18 @@ impl NoiseModel {
         };
         let space = Space::of(measure);
         let rounding = Rounding::of_values(step, space);
-        Some(NoiseModel { noise, space, slope, offset, rounding, is_scatter: false, ray: 0.0, smooth, smooth_ray: 0.0 })
+        Some(NoiseModel {
+            noise,
+            space,
+            slope,
+            offset,
+            rounding,
+            is_scatter: false,
+            ray: 0.0,
+            smooth,
+            smooth_ray: 0.0,
+            is_smooth_shown: false,
+        })
     }
 
     /// The same, its noise being the scatter that a map shows, with what rounding does on average.
@@ -179,9 +192,35 @@ impl NoiseModel {
         self.with_smooth(self.smooth.times(factor), self.smooth_ray * factor)
     }
 
+    /// The same, its smooth part being what a map shows.
+    pub(crate) fn of_smooth_shown(self) -> Self {
+        NoiseModel { is_smooth_shown: true, ..self }
+    }
+
+    /// Whether the smooth part is what a map shows, and so as uncertain.
+    pub(crate) fn is_smooth_shown(&self) -> bool {
+        self.is_smooth_shown
+    }
+
     /// Pixels of the ray whose error is smooth.
     pub(crate) fn smooth_ray(&self) -> f64 {
         self.smooth_ray
+    }
+
+    /// Variance of the smooth part of a pixel near q where a surface has that slope, `a^2 + b^2`.
+    pub(crate) fn smooth_variance(&self, q: f64, slope: f64) -> f64 {
+        self.smooth_sigma(q).powi(2) + self.smooth_ray * self.smooth_ray * slope
+    }
+
+    /// The same with a smooth part so many times as large.
+    pub(crate) fn smoother(self, factor: f64) -> Self {
+        NoiseModel { smooth: self.smooth.times(factor), smooth_ray: factor * self.smooth_ray, ..self }
+    }
+
+    /// Variance of what a pixel near q has for itself, rounding as if noise dithered it.
+    pub(crate) fn own_variance(&self, q: f64) -> f64 {
+        let (sensor, rounding) = (self.sensor_sigma(q).powi(2), self.step(q).powi(2) / 12.0);
+        if self.is_scatter { sensor.max(rounding) } else { sensor + rounding }
     }
 
     /// Standard deviation of the smooth part of q.

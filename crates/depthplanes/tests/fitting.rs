@@ -377,3 +377,39 @@ fn metric_covariances_predict_the_scatter_of_fits() {
         assert!((mean - 3.0).abs() < 0.3, "normalised squared error {mean} instead of 3 at noise {noise}");
     }
 }
+
+#[test]
+fn what_smooth_error_does_to_a_plane_is_what_its_correlation_says() {
+    let (length, step) = (64.0, 4.0);
+    for [width, height] in [[24, 16], [64, 64], [200, 100], [400, 40]] {
+        let nodes: Vec<[f64; 2]> = (0..width / 4 * (height / 4))
+            .map(|k| [k % (width / 4), k / (width / 4)].map(|at| (f64::from(at) + 0.5) * step))
+            .collect();
+        let mut sums = Moments::default();
+        nodes.iter().for_each(|[u, v]| sums.add(*u, *v, 0.0));
+        let fit = sums.fit().unwrap();
+        let (given, left) = fit.covariance_by_smooth(1.0, length);
+        // A Gaussian correlation of that integral, pair by pair.
+        let middle = [f64::from(width) / 2.0, f64::from(height) / 2.0];
+        let share = |pixels: u32| f64::from(pixels * pixels) / 12.0 * (1.0 - 16.0 / f64::from(pixels * pixels));
+        let (mut a, mut b, mut mean) = (0.0, 0.0, 0.0);
+        for [u, v] in &nodes {
+            for [x, y] in &nodes {
+                let apart = (u - x).powi(2) + (v - y).powi(2);
+                let correlation =
+                    (-std::f64::consts::PI * apart / (length * length)).exp() / (nodes.len() as f64).powi(2);
+                a += correlation * (u - middle[0]) * (x - middle[0]) / share(width).powi(2);
+                b += correlation * (v - middle[1]) * (y - middle[1]) / share(height).powi(2);
+                mean += correlation;
+            }
+        }
+        let [row, column, one] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [middle[0], middle[1], 1.0]];
+        let variance =
+            |by: [f64; 3]| -> f64 { (0..3).map(|i| (0..3).map(|j| by[i] * given[i][j] * by[j]).sum::<f64>()).sum() };
+        for (given, expected) in [(variance(row), a), (variance(column), b), (variance(one), mean)] {
+            assert!((given / expected - 1.0).abs() < 0.2, "{width} x {height}: {given} instead of {expected}");
+        }
+        let kept = 1.0 - mean - a * share(width) - b * share(height);
+        assert!((left - kept).abs() < 0.1, "{width} x {height}: {left} left instead of {kept}");
+    }
+}

@@ -113,7 +113,8 @@ impl Distances {
         let fit = tally.inverse_depth.filter(|_| !self.behind_infinity)?;
         let plane = fit::hessian(&fit, camera)?;
         let n = tally.pixel_count as f64;
-        let (covariance, covariance_from) = match seen.noise.and_then(|noise| tally.covariance_by(noise, seen.sensor)) {
+        let by_noise = |noise| tally.known(seen.sensor)?.covariance(noise);
+        let (covariance, covariance_from) = match seen.noise.and_then(by_noise) {
             Some(covariance) => (covariance, CovarianceSource::Noise),
             None => (fit.covariance(), CovarianceSource::Residuals),
         };

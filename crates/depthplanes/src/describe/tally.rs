@@ -1,11 +1,12 @@
 //! The first pass over a plane's pixels: how many there are, where they lie, and the planes of least squares through them.
 
+use super::covariance::Known;
 use super::parts::ByLabel;
 use crate::camera::{Intrinsics, Measure, Sensor};
 use crate::detection::PixelBox;
 use crate::fit::{AffineFit, Moments, ValueSums};
 use crate::map::{DepthView, Pixel};
-use crate::noise::{NoiseModel, Patch};
+use crate::noise::Patch;
 use crate::select::LabelledRun;
 
 /// What the first pass knows of a plane.
@@ -141,9 +142,8 @@ impl Tally {
         [ray[0] * z + uz / camera.fx, ray[1] * z + vz / camera.fy, z].map(|sum| sum * metres)
     }
 
-    /// Covariance of the coefficients in inverse depth by the noise; larger if the residuals are, by more than three
-    /// standard deviations of their chi-squared. `None` if the noise is 0.
-    pub(super) fn covariance_by(&self, noise: &NoiseModel, sensor: &Sensor) -> Option<[[f64; 3]; 3]> {
+    /// Its plane in the space where the noise is known.
+    pub(super) fn known(&self, sensor: &Sensor) -> Option<Known> {
         // Noise is known in map units where these are affine in inverse depth.
         let (fit, slope) = match sensor.measure {
             Measure::Depth { .. } => (self.inverse_depth?, 1.0),
@@ -153,13 +153,7 @@ impl Tally {
         let PixelBox { u_min, v_min, u_max, v_max } = self.bounding_box;
         let extent = [u_max - u_min + 1, v_max - v_min + 1].map(f64::from);
         let patch = Patch { gradient: [fit.abc[0], fit.abc[1]], extent, pixels: fit.n };
-        let (covariance, expected) = fit.covariance_by(|q| noise.variance_in(&patch, q));
-        if expected <= 0.0 {
-            return None;
-        }
-        let ratio = fit.variance() / expected;
-        let excess = if ratio > 1.0 + 3.0 * (2.0 / fit.n).sqrt() { ratio } else { 1.0 };
-        Some(covariance.map(|row| row.map(|x| x * excess * slope * slope)))
+        Some(Known { fit, patch, q: fit.at(self.centroid[0], self.centroid[1]), slope })
     }
 }
 

@@ -82,15 +82,14 @@ impl Merger {
         reserve_to(&mut self.has_changed, grid.len());
         self.into.extend(0..regions.all.len() as u32);
         self.list_pairs(grid, threads);
-        weigh(&mut self.pairs, &regions.all, rays, threads);
-        while self.merge_best(&mut regions.all, rays, threads) {}
-        self.pairs.sort_unstable_by_key(key);
+        self.merge_listed(&mut regions.all, rays, threads);
     }
 
-    /// Joins more of the listed pairs, since the noise is known to be larger.
-    pub(super) fn merge_again(&mut self, all: &mut [Region], rays: &Rays, threads: usize) {
-        self.pairs.iter_mut().for_each(|pair| pair.cost = f64::NAN);
+    /// Joins regions of the listed pairs.
+    pub(super) fn merge_listed(&mut self, all: &mut [Region], rays: &Rays, threads: usize) {
+        weigh(&mut self.pairs, all, rays, threads);
         while self.merge_best(all, rays, threads) {}
+        self.pairs.sort_unstable_by_key(key);
     }
 
     /// Leaves out regions of fewer than `least` pixels, and those that became part of another.

@@ -185,7 +185,9 @@ impl Planar {
             stated(space, self.noise, self.noise_growth).or(sensor.noise).and_then(model).unwrap_or_else(|| {
                 model(estimated(shown.white)).expect("an estimate is of the map's own kind").of_scatter()
             });
-        let smooth = self.stated_smooth(sensor).unwrap_or_else(|| estimated(shown.smooth)).times(scale);
+        let stated_smooth = self.stated_smooth(sensor);
+        let white = if stated_smooth.is_none() { white.of_smooth_shown() } else { white };
+        let smooth = stated_smooth.unwrap_or_else(|| estimated(shown.smooth)).times(scale);
         match self.ray {
             0.0 => {
                 let [ray, smooth_ray] = [shown.white, shown.smooth].map(|factor| scale * factor * shown.ray);
@@ -374,7 +376,7 @@ impl Runner {
         *noise = noise.with_smooth_times(factor.sqrt());
         pyramid.widen_smooth(factor as f32);
         regions.all.iter_mut().for_each(|region| region.smooth *= factor);
-        merger.merge_again(&mut regions.all, rays, threads);
+        merger.merge_listed(&mut regions.all, rays, threads);
         merger.drop_small(&mut pyramid.grids[0], regions, params.least(), threads)?;
         watch(Moment::Shown, self, noise);
         Ok(())
