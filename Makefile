@@ -35,7 +35,7 @@ CARGO_FUZZ := target/tools/bin/cargo-fuzz
 say = @printf '\n== %s\n' '$(1)'
 
 .NOTPARALLEL:
-.PHONY: help demo test lint fmt format clippy rust-tests rustdoc oracles bench bench-planar tables peers results golden fuzz clean
+.PHONY: help demo test lint fmt format clippy rust-tests rustdoc oracles bench bench-planar ablate tables peers results golden fuzz clean
 
 help: ## List the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -87,6 +87,10 @@ bench-planar: ## Time planar on recorded and made-up frames, beside OTHER's prog
 	mkdir -p "benchmarks/record/$(MACHINE)"
 	target/release/examples/bench_planar $(ROUNDS) '$(DATA)' $(OTHER) > "benchmarks/record/$(MACHINE)/planar.partial"
 	mv "benchmarks/record/$(MACHINE)/planar.partial" "benchmarks/record/$(MACHINE)/planar-$$(date +%F).csv"
+
+ablate: ## Switch each part of planar off in turn and print what it is worth
+	CARGO_TARGET_DIR=target/ablate $(CARGO) build --release --package depthplanes-cli --features ablate
+	scripts/ablate target/ablate/release/depthplanes '$(DATA)'
 
 tables: $(VENV) ## Write docs/paper-tables.md: the paper's tables on the same maps
 	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes-cli

@@ -7,6 +7,7 @@ use super::grow::Region;
 use super::merge::bend;
 use super::planes::BENT;
 use super::seams::Seams;
+use super::switches::is_on;
 use crate::group::{reserve_to, vectorised};
 use crate::parallel::{in_parts, in_rows};
 
@@ -87,7 +88,7 @@ impl Contacts {
         let region = |label: u16| usize::from(label) - 1;
         pairs.retain(|pair| {
             let [a, b] = pair.map(region);
-            bend(&all[a], &all[b]) <= 1.0
+            is_on("contact") && bend(&all[a], &all[b]) <= 1.0
         });
         let mut any = false;
         for pair in pairs.iter() {

@@ -12,6 +12,7 @@ use super::grow::{Region, Regions};
 use super::merge::Pair;
 use super::pyramid::Pyramid;
 use super::quadratic::{Frame, Sums};
+use super::switches::is_on;
 use super::thresholds::{
     Allowance, BOWED_ANGLE, GENTLE, GENTLE_LARGER, GENTLE_SHARE, GENTLE_SIZE, JOINT_GAIN, JOINT_MISS, LOOSE_MISS, TURN,
 };
@@ -140,22 +141,26 @@ impl Facets {
         reserve_to(&mut self.joints, 4 * cells);
         reserve_to(&mut self.folds, cells);
         let Facets { bows, boxes, signs, joints, folds } = self;
-        let is_bowed =
-            |(id, is_strip): (u32, &bool)| !is_strip && bows.is_bowed(id, &regions.all[id as usize], rays, TURN);
+        let is_bowed = |(id, is_strip): (u32, &bool)| {
+            is_on("bow") && !is_strip && bows.is_bowed(id, &regions.all[id as usize], rays, TURN)
+        };
         signs.extend((0..).zip(is_strip).map(|region| is_bowed(region).then_some(Sign::Bow)));
         let scene = Scene { pyramid, all: &regions.all, noise, is_strip, boxes, bows };
-        scene.find_joints(pairs, joints, signs, threads);
+        if is_on("joint") {
+            scene.find_joints(pairs, joints, signs, threads);
+        }
         scene.measure_folds(pairs, rays, folds);
         let look_around = |part: Numbered<'_, Option<Sign>>| {
             for (id, sign) in (part.first..).zip(part.all).filter(|(id, sign)| sign.is_none() && !is_strip[*id]) {
                 let (region, number) = (&scene.all[id], id as u32);
                 let is_small = region.sums.n < LARGE;
                 let border = Border { grid: &pyramid.grids[0], all: scene.all, rays, id: number };
-                if region.sums.n < SMALL && scene.surroundings(number).bends() {
+                if is_on("surroundings") && region.sums.n < SMALL && scene.surroundings(number).bends() {
                     *sign = Some(Sign::Surroundings);
-                } else if is_small && border.turns(&boxes[id]) {
+                } else if is_on("turns") && is_small && border.turns(&boxes[id]) {
                     *sign = Some(Sign::Turns);
-                } else if folds[id].is_gentle()
+                } else if is_on("folds")
+                    && folds[id].is_gentle()
                     && ((is_small && folds[id].goes_on) || bows.is_bowed(number, region, rays, 0.0))
                 {
                     *sign = Some(Sign::Folds);

@@ -9,6 +9,7 @@ use super::grid::Grid;
 use super::grow::Region;
 use super::merge::Pair;
 use super::planes::Planes;
+use super::switches::is_on;
 use super::tiles::SIDE;
 use crate::group::{reserve_to, vectorised};
 use crate::parallel::{Numbered, in_parts};
@@ -65,7 +66,7 @@ impl Explainer {
             for (id, is_explained) in (part.first..).zip(part.all) {
                 let others = &larger[id][..counts[id]];
                 let share = || share_on(field, grid, planes, id as u32, others, &boxes[id]);
-                *is_explained = !others.is_empty() && vectorised(share) > EXPLAINED;
+                *is_explained = is_on("explained") && !others.is_empty() && vectorised(share) > EXPLAINED;
             }
         };
         in_parts(threads, Numbered { first: 0, all: is_explained }, find, |(), ()| ());

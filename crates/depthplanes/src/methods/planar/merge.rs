@@ -5,6 +5,7 @@
 
 use super::grid::{Grid, NONE};
 use super::grow::{Region, Regions};
+use super::switches::is_on;
 use super::thresholds::{BOWED_ANGLE, BOWED_MERGE, BOWED_STEP, MERGE, STEP_NOISE};
 use crate::error::{Error, Result};
 use crate::fit::Moments;
@@ -286,7 +287,8 @@ fn weigh(pairs: &mut [Pair], all: &[Region], rays: &Rays, threads: usize) {
         for pair in pairs {
             let [a, b] = pair.ids.map(|id| &all[id as usize]);
             let cost = bend(a, b);
-            let is_one = cost <= 1.0 || (cost <= BOWED_MERGE && goes_on(a, b, pair.middle(), rays));
+            let is_one =
+                cost <= 1.0 || (cost <= BOWED_MERGE && is_on("bowed-merge") && goes_on(a, b, pair.middle(), rays));
             pair.cost = if is_one { cost } else { f64::INFINITY };
         }
     };

@@ -30,6 +30,7 @@ mod seams;
 mod seen;
 mod settle;
 mod shown;
+mod switches;
 #[cfg(test)]
 mod tests;
 mod thresholds;
@@ -65,11 +66,12 @@ use pyramid::Pyramid;
 use reach::Reach;
 use seams::Seams;
 use shown::Shown;
+use switches::is_on;
 
 pub(super) static INFO: MethodInfo = MethodInfo {
     name: "planar",
     about: "Finds true planes: regions that one plane explains to within the sensor's noise, in inverse depth or disparity.",
-    stages: &["tiles", "grow", "judge", "assign", STAGES[0], STAGES[1], STAGES[2], STAGES[3]],
+    stages: &["tiles", "grow", "merge", "judge", "assign", STAGES[0], STAGES[1], STAGES[2], STAGES[3]],
     tells_curved: true,
     params: PARAMS,
     build: |values| {
@@ -286,6 +288,7 @@ enum Moment {
 type Watch<'a> = dyn FnMut(Moment, &Runner, &NoiseModel) + 'a;
 
 impl Runner {
+    /// The method: a line for each step, in the order of docs/planar.md.
     fn planar<T: Pixel>(
         &mut self,
         map: DepthView<'_, T>,
@@ -296,33 +299,40 @@ impl Runner {
         if self.params.min_area > 0.0 {
             job.sensor.check_metric("min-area")?;
         }
-        let mut noise = self.sum_tiles(&map, job);
+        let (rays, threads) = (&Rays::of(&job.sensor, map.width(), map.height()), job.threads);
+
+        self.sum_tiles(&map, job);
+        let mut noise = self.estimate_noise(&map, job);
         job.done("tiles");
-        let rays = &Rays::of(&job.sensor, map.width(), map.height());
-        self.grow(&noise, rays, job.threads, watch)?;
-        if self.params.stated_smooth(&job.sensor).is_none() {
-            self.look_at_regions(&mut noise, rays, job.threads, watch)?;
-        }
+
+        self.grow(&noise, threads);
+        self.settle(threads);
+        watch(Moment::Grown, self, &noise);
         job.done("grow");
-        self.judge(Optics { noise: &noise, rays }, job.threads, watch);
+
+        self.merge(rays, threads);
+        watch(Moment::Merged, self, &noise);
+        self.drop_small(threads)?;
+        if let Some(times) = self.smooth_shown(rays, job) {
+            noise = noise.with_smooth_times(times);
+            self.merge_again(times, rays, threads)?;
+            watch(Moment::Shown, self, &noise);
+        }
+        job.done("merge");
+
+        self.look_at_shapes(&noise, threads);
+        self.mark_curved(Optics { noise: &noise, rays }, threads);
+        watch(Moment::Judged, self, &noise);
+        self.drop_explained(threads);
         job.done("judge");
-        self.assign(&noise, false, job.threads);
-        self.reach(&noise, job.threads);
+
+        self.assign(&noise, false, threads);
+        self.reach(&noise, threads);
         watch(Moment::Assigned, self, &noise);
-        let Runner { regions, image, reach, contacts, .. } = self;
-        contacts.join(reach.touching(), &mut regions.all, image, job.threads);
+        self.join_contacts(threads);
         job.done("assign");
-        let Runner { params, field, image, finisher, pieces, .. } = self;
-        let ids = planes::of_image(image, field)?;
-        let wanted = Wanted {
-            min: params.min,
-            min_area: params.min_area,
-            noise: Some(&noise),
-            valid_pixels: field.valid_pixels,
-        };
-        let threads = job.threads;
-        let join = |grouper: &mut Grouper| pieces.join(field, image, grouper, threads);
-        finisher.finish_united(&map, &ids, &wanted, join, job, out)?;
+
+        self.finish(&map, &noise, job, out)?;
         out.curved = match job.curved {
             true => Some(self.find_bent(&map, job, &noise, out.curved.take())?),
             false => None,
@@ -333,58 +343,68 @@ impl Runner {
         Ok(())
     }
 
-    /// The map in the space where planes are affine, its tiles, and the noise to expect.
-    fn sum_tiles<T: Pixel>(&mut self, map: &DepthView<'_, T>, job: &Job<'_>) -> NoiseModel {
-        let Runner { params, field, pyramid, scales, rounding, .. } = self;
-        let space = Space::of(job.sensor.measure);
-        field.prepare(map);
-        let rounding = rounding.find(map, space);
-        pyramid.sum(map, space, job.threads, field);
-        scales.look(pyramid);
-        let errors = scales.errors(space, &rounding).unwrap_or(Errors::NONE);
-        params.expected(&job.sensor, &errors, rounding)
+    /// Tiles: the map in the space where planes are affine, and the sums of its cells.
+    fn sum_tiles<T: Pixel>(&mut self, map: &DepthView<'_, T>, job: &Job<'_>) {
+        self.field.prepare(map);
+        self.pyramid.sum(map, Space::of(job.sensor.measure), job.threads, &mut self.field);
     }
 
-    /// Regions of cells on one plane.
-    fn grow(&mut self, noise: &NoiseModel, rays: &Rays, threads: usize, watch: &mut Watch<'_>) -> Result<()> {
+    /// The noise to expect: stated, or as the cells show it.
+    fn estimate_noise<T: Pixel>(&mut self, map: &DepthView<'_, T>, job: &Job<'_>) -> NoiseModel {
+        let space = Space::of(job.sensor.measure);
+        let rounding = if is_on("rounding") { self.rounding.find(map, space) } else { Rounding::NONE };
+        self.scales.look(&self.pyramid);
+        let errors = self.scales.errors(space, &rounding).unwrap_or(Errors::NONE);
+        self.params.expected(&job.sensor, &errors, rounding)
+    }
+
+    /// Grow: regions of cells on one plane.
+    fn grow(&mut self, noise: &NoiseModel, threads: usize) {
         let confidence = self.params.confidence;
         self.pyramid.expect(noise, confidence, threads);
         self.regions.grow(&mut self.pyramid, confidence, threads);
-        self.regions.settle(&mut self.pyramid, threads);
-        watch(Moment::Grown, self, noise);
+    }
+
+    /// Border tiles go to the region beside them that they suit better.
+    fn settle(&mut self, threads: usize) {
+        if is_on("settle") {
+            self.regions.settle(&mut self.pyramid, threads);
+        }
+    }
+
+    /// Merge: regions that one plane explains become one.
+    fn merge(&mut self, rays: &Rays, threads: usize) {
         self.merger.merge(&self.pyramid.grids[0], &mut self.regions, rays, threads);
-        watch(Moment::Merged, self, noise);
+    }
+
+    /// Leaves out what is too small and what became part of another.
+    fn drop_small(&mut self, threads: usize) -> Result<()> {
         self.merger.drop_small(&mut self.pyramid.grids[0], &mut self.regions, self.params.least(), threads)
     }
 
-    /// Takes the smooth part as large regions show it, and merges those that are one by it.
-    fn look_at_regions(
-        &mut self,
-        noise: &mut NoiseModel,
-        rays: &Rays,
-        threads: usize,
-        watch: &mut Watch<'_>,
-    ) -> Result<()> {
-        let Runner { params, pyramid, regions, merger, facets, shown, .. } = self;
-        pyramid.hand_up(threads);
-        facets.bows.measure(pyramid, &regions.all);
-        let scale = params.noise_scale * params.noise_scale;
-        let factor = shown.factor(&regions.all, &facets.bows, rays, pyramid.grids[0].len(), scale);
-        if factor == 1.0 {
-            return Ok(());
+    /// How many times the smooth part large regions show that was estimated, if more than once; none where it is stated.
+    fn smooth_shown(&mut self, rays: &Rays, job: &Job<'_>) -> Option<f64> {
+        let Runner { params, pyramid, regions, facets, shown, .. } = self;
+        if params.stated_smooth(&job.sensor).is_some() || !is_on("shown") {
+            return None;
         }
-        *noise = noise.with_smooth_times(factor.sqrt());
-        pyramid.widen_smooth(factor as f32);
-        regions.all.iter_mut().for_each(|region| region.smooth *= factor);
-        merger.merge_listed(&mut regions.all, rays, threads);
-        merger.drop_small(&mut pyramid.grids[0], regions, params.least(), threads)?;
-        watch(Moment::Shown, self, noise);
-        Ok(())
+        pyramid.hand_up(job.threads);
+        facets.bows.measure(pyramid, &regions.all);
+        let times = shown.times(&regions.all, &facets.bows, rays, pyramid.grids[0].len());
+        Some(params.noise_scale * times).filter(|&times| times > 1.0)
     }
 
-    /// Which regions are no surface, and which of the others are curved.
-    fn judge(&mut self, optics: Optics<'_>, threads: usize, watch: &mut Watch<'_>) {
-        let noise = optics.noise;
+    /// Merges regions that are one by so many times the smooth part.
+    fn merge_again(&mut self, times: f64, rays: &Rays, threads: usize) -> Result<()> {
+        let Runner { pyramid, regions, merger, .. } = self;
+        pyramid.widen_smooth((times * times) as f32);
+        regions.all.iter_mut().for_each(|region| region.smooth *= times * times);
+        merger.merge_listed(&mut regions.all, rays, threads);
+        self.drop_small(threads)
+    }
+
+    /// Judge: how regions bow, and which of them larger ones beside them explain.
+    fn look_at_shapes(&mut self, noise: &NoiseModel, threads: usize) {
         let Runner { params, field, pyramid, regions, merger, facets, explainer, .. } = self;
         pyramid.hand_up(threads);
         let planes = params.planes(&regions.all, noise, false);
@@ -397,15 +417,23 @@ impl Runner {
             },
             || bows.measure(pyramid, &regions.all),
         );
+    }
+
+    /// Marks the regions that are facets of curved surfaces.
+    fn mark_curved(&mut self, optics: Optics<'_>, threads: usize) {
+        let Runner { pyramid, regions, merger, facets, explainer, .. } = self;
         facets.mark(pyramid, regions, &merger.pairs, &explainer.is_explained, optics, threads);
-        watch(Moment::Judged, self, noise);
+    }
+
+    /// Leaves out regions that are explained by larger ones.
+    fn drop_explained(&mut self, threads: usize) {
         let Runner { pyramid, regions, merger, explainer, .. } = self;
         let mut explained = explainer.is_explained.iter();
         let is_explained = |_: &Region| explained.next() == Some(&true);
         merger.drop(&mut pyramid.grids[0], regions, threads, is_explained);
     }
 
-    /// The region of every pixel: its plane, or its curved region; while planes are sought, all curved ones as
+    /// Assign: the region of every pixel: its plane, or its curved region; while planes are sought, all curved ones as
     /// [`planes::BENT`].
     fn assign(&mut self, noise: &NoiseModel, curved: bool, threads: usize) {
         let Runner { params, field, pyramid, regions, image, .. } = self;
@@ -416,12 +444,41 @@ impl Runner {
         assign::assign(field, [tiles, blocks], &planes, threads, image);
     }
 
-    /// Lets planes reach on, and lists those that touch.
+    /// Planes reach on along strips that are too thin for a tile; those that touch are listed.
     fn reach(&mut self, noise: &NoiseModel, threads: usize) {
         let Runner { params, field, pyramid, regions, image, seams, reach, contacts, .. } = self;
         let planes = params.planes(&regions.all, noise, false);
         seams.find(image, field.stride, threads);
         contacts.list(seams, image, threads);
-        reach.reach(field, &planes, seams, &pyramid.bands, image, threads);
+        if is_on("reach") {
+            reach.reach(field, &planes, seams, &pyramid.bands, image, threads);
+        }
+    }
+
+    /// Regions whose pixels touch are merged as well.
+    fn join_contacts(&mut self, threads: usize) {
+        let Runner { regions, image, reach, contacts, .. } = self;
+        contacts.join(reach.touching(), &mut regions.all, image, threads);
+    }
+
+    /// Group, select, fit: connected pieces of one region, those that are large enough, and their planes.
+    fn finish<T: Pixel>(
+        &mut self,
+        map: &DepthView<'_, T>,
+        noise: &NoiseModel,
+        job: &mut Job<'_>,
+        out: &mut Detection,
+    ) -> Result<()> {
+        let Runner { params, field, image, finisher, pieces, .. } = self;
+        let ids = planes::of_image(image, field)?;
+        let wanted =
+            Wanted { min: params.min, min_area: params.min_area, noise: Some(noise), valid_pixels: field.valid_pixels };
+        let threads = job.threads;
+        let join = |grouper: &mut Grouper| {
+            if is_on("pieces") {
+                pieces.join(field, image, grouper, threads);
+            }
+        };
+        finisher.finish_united(map, &ids, &wanted, join, job, out)
     }
 }

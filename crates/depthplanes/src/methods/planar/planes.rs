@@ -2,6 +2,7 @@
 
 use super::field::Field;
 use super::grow::Region;
+use super::switches::is_on;
 use crate::error::Result;
 use crate::map::DepthView;
 use crate::noise::NoiseModel;
@@ -52,7 +53,7 @@ impl Planes<'_> {
         let expected = self.noise.variance(q)
             + self.noise.smooth_sigma(q).powi(2)
             + f64::from(of_slope((self.noise.ray() + self.noise.smooth_ray()) as f32, a, b));
-        region.excess().max(1.0) * expected
+        if is_on("excess") { region.excess().max(1.0) * expected } else { expected }
     }
 
     /// Square of the largest distance from a region's plane at q.

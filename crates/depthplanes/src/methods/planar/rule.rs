@@ -6,6 +6,7 @@
 
 use super::assign::{DU, DV, Local, PIXELS, Pixels};
 use super::grow::Region;
+use super::switches::is_on;
 
 /// A block's pixels are not parted by a line if they lie nearer to one of the planes by so much, squares in units of
 /// `Local::most`: by as much, all together, as one pixel may lie off. The line is known no better than the planes,
@@ -35,7 +36,7 @@ impl Rule {
         let (ours, theirs) = (above(first.middle), above(second.middle));
         let sign = if ours > 0.0 { 1.0 } else { -1.0 };
         Rule {
-            by_line: ours * theirs < 0.0,
+            by_line: is_on("line") && ours * theirs < 0.0,
             a: sign * (plane.a - other.a),
             b: sign * (plane.b - other.b),
             c: sign * (plane.c - other.c),
@@ -50,7 +51,7 @@ impl Rule {
         one_beaten: &mut Pixels<f32>,
         other_beaten: &mut Pixels<f32>,
     ) {
-        let belied = if self.by_line { self.belied([one, other]) } else { 0.0 };
+        let belied = if self.by_line && is_on("belied") { self.belied([one, other]) } else { 0.0 };
         for at in 0..PIXELS {
             let both = if is_near_both(one[at], other[at]) { 1.0 } else { 0.0 };
             let by_line = if belied == 0.0 { self.line(at) } else { belied };

@@ -17,9 +17,9 @@ pub(super) struct Shown {
 }
 
 impl Shown {
-    /// The factor on the smooth part's variance, 1 or more: a share of the median of what large regions show, each counted
-    /// by its pixels, times `scale`. Those that turn as curved surfaces do show nothing.
-    pub(super) fn factor(&mut self, all: &[Region], bows: &Bows, rays: &Rays, most_regions: usize, scale: f64) -> f64 {
+    /// The deviation of the smooth part as a multiple of the estimated one, 1 or more: a share of the median of what large
+    /// regions show, each counted by its pixels. Those that turn as curved surfaces do show nothing.
+    pub(super) fn times(&mut self, all: &[Region], bows: &Bows, rays: &Rays, most_regions: usize) -> f64 {
         let ratios = &mut self.ratios;
         reserve_to(ratios, most_regions);
         for (id, region) in (0..).zip(all).filter(|(_, region)| region.sums.n >= SHOWN_PIXELS) {
@@ -34,7 +34,6 @@ impl Shown {
             pixels_so_far += pixels;
             pixels_so_far >= half
         });
-        let shown = median.map_or(0.0, |(ratio, _)| scale * SHOWN * SHOWN * ratio);
-        shown.clamp(1.0, SHOWN_MOST * SHOWN_MOST)
+        median.map_or(0.0, |(ratio, _)| SHOWN * ratio.max(0.0).sqrt()).clamp(1.0, SHOWN_MOST)
     }
 }
