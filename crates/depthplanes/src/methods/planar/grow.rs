@@ -253,14 +253,13 @@ impl Area<'_> {
     /// Finds the cells that may join a region.
     #[inline(always)]
     fn open(&mut self) {
-        let (grid, before) = (self.grid, self.rows.start * self.grid.columns);
-        let least = fewest_joining(grid);
-        let may_join = |pixels: f32, roughness: f32| (pixels >= least) & (!is_large(grid) | (roughness <= 1.0));
-        let cells = self.region.iter().zip(&grid.sums.n[before..]).zip(&grid.roughness[before..]);
-        self.work.open.clear();
-        self.work
-            .open
-            .extend(cells.map(|((&id, &pixels), &roughness)| u8::from((id == NONE) & may_join(pixels, roughness))));
+        let Area { grid, region, work: Work { open, .. }, .. } = self;
+        let (least, any_may, before) = (fewest_joining(grid), !is_large(grid), self.rows.start * grid.columns);
+        open.resize(region.len(), 0);
+        let cells = region.iter().zip(&grid.sums.n[before..]).zip(&grid.roughness[before..]);
+        for (open, ((&id, &pixels), &roughness)) in open.iter_mut().zip(cells) {
+            *open = u8::from((id == NONE) & (pixels >= least) & (any_may | (roughness <= 1.0)));
+        }
     }
 
     /// Lets the regions that came down from coarser cells grow on.
@@ -327,7 +326,7 @@ impl Area<'_> {
             let beside = self.neighbours(place);
             for i in 0..4 {
                 if self.work.open[self.at(beside[i])] != 0 {
-                    self.take(id, beside[i]);
+                    self.take(id, beside[i], &self.grid.cell(beside[i]));
                 }
             }
         }
@@ -335,8 +334,8 @@ impl Area<'_> {
 
     /// Gives a cell to a region and to the queue, if it lies on its plane.
     #[inline(always)]
-    fn take(&mut self, id: u32, place: Place) -> bool {
-        let takes = self.all[id as usize].takes(&self.grid.cell(place), is_large(self.grid), self.confidence);
+    fn take(&mut self, id: u32, place: Place, cell: &Cell) -> bool {
+        let takes = self.all[id as usize].takes(cell, is_large(self.grid), self.confidence);
         if takes {
             self.give(place, id);
         }
@@ -382,7 +381,8 @@ impl Area<'_> {
     #[inline(always)]
     fn take_beside(&mut self, place: Place) -> bool {
         let ids = self.neighbours(place).map(|beside| self.region[self.at(beside)]);
-        (0..4).any(|i| ids[i] != NONE && !ids[..i].contains(&ids[i]) && self.take(ids[i], place))
+        let cell = self.grid.cell(place);
+        (0..4).any(|i| ids[i] != NONE && !ids[..i].contains(&ids[i]) && self.take(ids[i], place, &cell))
     }
 
     /// The four neighbours of a cell; at the edge itself in place of those that are missing.
