@@ -107,6 +107,14 @@ const LANES: usize = 32;
 /// One number of each.
 type Lanes = [f64; LANES];
 
+/// Up to so many numbers.
+#[inline(always)]
+fn lanes(numbers: &[f32]) -> Lanes {
+    let mut lanes = [0.0; LANES];
+    lanes.iter_mut().zip(numbers).for_each(|(lane, &number)| *lane = number.into());
+    lanes
+}
+
 /// Variance of one pixel's q: the sensor's own error and the rounding of its values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseModel {
@@ -229,21 +237,27 @@ impl NoiseModel {
     pub(crate) fn expect(&self, [q, a, b]: [&[f32]; 3], side: f64, [variances, smooth]: [&mut [f32]; 2]) {
         let slopes = a.chunks(LANES).zip(b.chunks(LANES));
         let found = variances.chunks_mut(LANES).zip(smooth.chunks_mut(LANES));
-        for ((cells, (a, b)), (variances, smooth)) in q.chunks(LANES).zip(slopes).zip(found) {
-            let mut q = [0.0; LANES];
-            q.iter_mut().zip(cells).for_each(|(q, &cell)| *q = cell.into());
-            let (steps, sensor, shared) =
-                (self.rounding.steps(&q), self.sigmas(&self.noise, &q), self.sigmas(&self.smooth, &q));
-            for lane in 0..cells.len().min(LANES) {
-                let (square, sensor, shared) = (steps[lane] * steps[lane], sensor[lane], shared[lane]);
-                let steady = self.steady(square, sensor * sensor);
-                variances[lane] = self.with_steps(q[lane], sensor, square, steady) as f32;
-                let [a, b] = [a[lane], b[lane]].map(f64::from);
-                let slope = a * a + b * b;
-                let rounding = steady * square / 12.0 * (square / (square + side * side * slope + f64::MIN_POSITIVE));
-                smooth[lane] = (shared * shared + self.smooth_ray * self.smooth_ray * slope + rounding) as f32;
-            }
+        for ((q, (a, b)), (variances, smooth)) in q.chunks(LANES).zip(slopes).zip(found) {
+            let of_cells = self.expect_lanes([q, a, b].map(lanes), side);
+            variances.copy_from_slice(&of_cells[0][..variances.len()]);
+            smooth.copy_from_slice(&of_cells[1][..smooth.len()]);
         }
+    }
+
+    #[inline(always)]
+    fn expect_lanes(&self, [q, a, b]: [Lanes; 3], side: f64) -> [[f32; LANES]; 2] {
+        let (steps, sensor, shared) =
+            (self.rounding.steps(&q), self.sigmas(&self.noise, &q), self.sigmas(&self.smooth, &q));
+        let [mut variances, mut smooth] = [[0.0; LANES]; 2];
+        for lane in 0..LANES {
+            let (square, sensor, shared) = (steps[lane] * steps[lane], sensor[lane], shared[lane]);
+            let steady = self.steady(square, sensor * sensor);
+            variances[lane] = self.with_steps(q[lane], sensor, square, steady) as f32;
+            let slope = a[lane] * a[lane] + b[lane] * b[lane];
+            let rounding = steady * square / 12.0 * (square / (square + side * side * slope + f64::MIN_POSITIVE));
+            smooth[lane] = (shared * shared + self.smooth_ray * self.smooth_ray * slope + rounding) as f32;
+        }
+        [variances, smooth]
     }
 
     /// What the map's steps are in q, at q.

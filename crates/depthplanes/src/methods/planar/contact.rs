@@ -133,7 +133,7 @@ fn relabel(groups: &mut [[u16; ABREAST]], into: &[u16]) {
     for group in groups {
         // Most groups are of one region, and most regions stay what they are.
         let first = group[0];
-        if group.iter().fold(false, |any, &label| any | (label != first)) {
+        if *group != [first; ABREAST] {
             group.iter_mut().for_each(|label| *label = now(*label));
         } else if now(first) != first {
             *group = [now(first); ABREAST];
