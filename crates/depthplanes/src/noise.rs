@@ -102,6 +102,19 @@ impl SensorNoise {
     }
 }
 
+/// What is computed at a time: enough for the compiler to make vectors of it.
+const LANES: usize = 32;
+/// One number of each.
+type Lanes = [f64; LANES];
+
+/// Up to so many numbers.
+#[inline(always)]
+fn lanes(numbers: &[f32]) -> Lanes {
+    let mut lanes = [0.0; LANES];
+    lanes.iter_mut().zip(numbers).for_each(|(lane, &number)| *lane = number.into());
+    lanes
+}
+
 /// Variance of one pixel's q: the sensor's own error and the rounding of its values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseModel {
@@ -244,8 +257,13 @@ impl NoiseModel {
     #[inline(always)]
     fn with_sensor(&self, q: f64, sensor: f64) -> f64 {
         let square = self.step(q).powi(2);
+        self.with_steps(q, sensor, square, self.steady(square, sensor * sensor))
+    }
+
+    /// The same where a step has that square, so much of which is [`steady`].
+    #[inline(always)]
+    fn with_steps(&self, q: f64, sensor: f64, square: f64, steady: f64) -> f64 {
         let single = 2e-7 * q; // single precision, in which q is kept
-        let steady = self.steady(square, sensor * sensor);
         // What a map shows as scatter has what noise makes of the steps already.
         let dithered = if self.is_scatter { 0.0 } else { (1.0 - steady) * square / 12.0 };
         sensor * sensor + steady * ROUNDING * ROUNDING * square + dithered + single * single
@@ -257,36 +275,33 @@ impl NoiseModel {
         steady(square, if self.is_scatter { sensor } else { sensor + square / 12.0 })
     }
 
-    /// [`NoiseModel::variance`] of many.
+    /// Variances of single pixels of many cells of `side` pixels, of which q and slopes are given, and of the smooth part:
+    /// with what a rounding is that all of a cell share.
     #[inline(always)]
-    pub(crate) fn variances(&self, q: &[f32], variances: &mut [f32]) {
-        let NoiseModel { slope, offset, .. } = *self;
-        let per_slope = 1.0 / slope.abs();
-        let each = q.iter().zip(variances);
-        let with = |q: f64, sensor: f64| self.with_sensor(q, sensor) as f32;
-        match self.noise {
-            SensorNoise::Value { sigma } => each.for_each(|(&q, variance)| *variance = with(q.into(), sigma)),
-            SensorNoise::Depth { base, growth } => each.for_each(|(&q, variance)| {
-                let p = (slope * f64::from(q) + offset).max(0.0);
-                *variance = with(q.into(), (growth + base * p * p) * per_slope);
-            }),
-            SensorNoise::Table(_) => each.for_each(|(&q, variance)| *variance = self.variance(q.into()) as f32),
+    pub(crate) fn expect(&self, [q, a, b]: [&[f32]; 3], side: f64, [variances, smooth]: [&mut [f32]; 2]) {
+        let slopes = a.chunks(LANES).zip(b.chunks(LANES));
+        let found = variances.chunks_mut(LANES).zip(smooth.chunks_mut(LANES));
+        for ((q, (a, b)), (variances, smooth)) in q.chunks(LANES).zip(slopes).zip(found) {
+            let of_cells = self.expect_lanes([q, a, b].map(lanes), side);
+            variances.copy_from_slice(&of_cells[0][..variances.len()]);
+            smooth.copy_from_slice(&of_cells[1][..smooth.len()]);
         }
     }
 
-    /// Variances of the smooth part of many, of which the slopes are given as well: with what a rounding is that all of a
-    /// cell of `side` pixels share.
     #[inline(always)]
-    pub(crate) fn smooth_variances(&self, q: &[f32], a: &[f32], b: &[f32], side: f64, variances: &mut [f32]) {
-        for (((&q, &a), &b), variance) in q.iter().zip(a).zip(b).zip(variances) {
-            let q = f64::from(q);
-            let slope = f64::from(a) * f64::from(a) + f64::from(b) * f64::from(b);
-            let sigma = self.smooth_sigma(q);
-            let square = self.step(q).powi(2);
-            let steady = self.steady(square, self.sensor_sigma(q).powi(2));
+    fn expect_lanes(&self, [q, a, b]: [Lanes; 3], side: f64) -> [[f32; LANES]; 2] {
+        let (steps, sensor, shared) =
+            (self.rounding.steps(&q), self.sigmas(&self.noise, &q), self.sigmas(&self.smooth, &q));
+        let [mut variances, mut smooth] = [[0.0; LANES]; 2];
+        for lane in 0..LANES {
+            let (square, sensor, shared) = (steps[lane] * steps[lane], sensor[lane], shared[lane]);
+            let steady = self.steady(square, sensor * sensor);
+            variances[lane] = self.with_steps(q[lane], sensor, square, steady) as f32;
+            let slope = a[lane] * a[lane] + b[lane] * b[lane];
             let rounding = steady * square / 12.0 * (square / (square + side * side * slope + f64::MIN_POSITIVE));
-            *variance = (sigma * sigma + self.smooth_ray * self.smooth_ray * slope + rounding) as f32;
+            smooth[lane] = (shared * shared + self.smooth_ray * self.smooth_ray * slope + rounding) as f32;
         }
+        [variances, smooth]
     }
 
     /// What the map's steps are in q, at q.
@@ -305,18 +320,39 @@ impl NoiseModel {
     /// The same of either part.
     #[inline(always)]
     fn sigma_by(&self, part: &SensorNoise, q: f64) -> f64 {
-        let inverse_depth = || (self.slope * q + self.offset).max(0.0);
         match part {
             SensorNoise::Value { sigma } => *sigma,
-            SensorNoise::Depth { base, growth } => {
-                let p = inverse_depth();
-                (growth + base * p * p) / self.slope.abs()
-            }
+            SensorNoise::Depth { base, growth } => self.sigma_of_depth(*base, *growth, q),
             SensorNoise::Table(table) => {
-                let p = inverse_depth();
+                let p = self.inverse_depth(q);
                 table.sigma_m(p.recip()) * p * p / self.slope.abs()
             }
         }
+    }
+
+    /// The same at many q.
+    #[inline(always)]
+    fn sigmas(&self, part: &SensorNoise, q: &Lanes) -> Lanes {
+        let mut sigmas = [0.0; LANES];
+        match *part {
+            SensorNoise::Value { sigma } => sigmas.fill(sigma),
+            SensorNoise::Depth { base, growth } => {
+                (0..LANES).for_each(|lane| sigmas[lane] = self.sigma_of_depth(base, growth, q[lane]));
+            }
+            SensorNoise::Table(_) => (0..LANES).for_each(|lane| sigmas[lane] = self.sigma_by(part, q[lane])),
+        }
+        sigmas
+    }
+
+    #[inline(always)]
+    fn sigma_of_depth(&self, base: f64, growth: f64, q: f64) -> f64 {
+        let p = self.inverse_depth(q);
+        (growth + base * p * p) / self.slope.abs()
+    }
+
+    #[inline(always)]
+    fn inverse_depth(&self, q: f64) -> f64 {
+        (self.slope * q + self.offset).max(0.0)
     }
 
     /// Standard deviation of depth at range `depth_m` by the sensor's own error, metres; `None` for disparity of an

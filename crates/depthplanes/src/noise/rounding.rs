@@ -11,7 +11,7 @@
 //! planes that no row or column crosses every pixel of a line has one value: such repeats say nothing, and there the
 //! step is what all values are multiples of, which is 0 for true floats.
 
-use super::Space;
+use super::{LANES, Lanes, Space};
 use crate::group::reserve_to;
 use crate::map::{DepthView, Pixel};
 
@@ -77,10 +77,21 @@ impl Rounding {
     pub fn step(&self, q: f64) -> f64 {
         match &self.0 {
             Steps::Values { step, space } => step * space.unit(q),
+            Steps::Table { first, steps } => steps[place(q, *first)].into(),
+        }
+    }
+
+    /// The steps at many q.
+    #[inline(always)]
+    pub(super) fn steps(&self, q: &Lanes) -> Lanes {
+        let mut out = [0.0; LANES];
+        match &self.0 {
+            Steps::Values { step, space } => (0..LANES).for_each(|lane| out[lane] = step * space.unit(q[lane])),
             Steps::Table { first, steps } => {
-                steps[bin(q as f32).saturating_sub(*first).min(BINS as u32 - 1) as usize].into()
+                (0..LANES).for_each(|lane| out[lane] = steps[place(q[lane], *first)].into());
             }
         }
+        out
     }
 
     /// The variance that rounding brings into q: that of an error anywhere within half a step, alike.
@@ -95,6 +106,12 @@ impl Rounding {
 #[inline(always)]
 fn bin(q: f32) -> u32 {
     ((q.to_bits() & 0x7fff_ffff) + NEAR) >> SHIFT
+}
+
+/// The entry for q of a table that begins with that eighth of an octave.
+#[inline(always)]
+fn place(q: f64, first: u32) -> usize {
+    bin(q as f32).saturating_sub(first).min(BINS as u32 - 1) as usize
 }
 
 /// The middle of an eighth of an octave.

@@ -6,7 +6,7 @@
 //! than half of what is looked at.
 
 use super::{Rounding, SensorNoise, Space, steady};
-use crate::group::reserve_to;
+use crate::group::{reserve_to, vectorised};
 
 /// Sides of the cells, pixels.
 pub(super) const SIDES: [usize; 3] = [4, 8, 16];
@@ -28,6 +28,8 @@ const MEDIAN_OF_TILE: f64 = 12.34;
 /// Largest ratio of the scatters of means over cells and over cells of half the side: correlated error does not grow with
 /// the side, what grows faster is the scene.
 const GROWTH: f64 = 2.0;
+/// Steep tiles that tell the ray, at most.
+const STEEP_ONES: usize = 512;
 /// A slope makes error if steep tiles scatter more than flat ones by this factor, in variance.
 const STEEP: f64 = 1.25;
 /// The ray of a pixel is known to within so many pixels, at best and at worst: no camera is calibrated to better, and what
@@ -72,6 +74,14 @@ pub(crate) struct Scatter {
     pub(crate) square: f32,
 }
 
+/// A second difference of means on a slope, and the variance that it would have on level ground.
+#[derive(Clone, Copy, Debug)]
+struct Steep {
+    square: f64,
+    slope: f64,
+    flat: f64,
+}
+
 /// What is seen of a map or of several; reuses its memory.
 #[derive(Debug, Default)]
 pub(crate) struct Scales {
@@ -79,6 +89,7 @@ pub(crate) struct Scales {
     pub(crate) bends: [Vec<Bend>; 3],
     pub(crate) tiles: Vec<Scatter>,
     numbers: Vec<f32>,
+    steep: Vec<Steep>,
 }
 
 /// The parts of a pixel's error: standard deviations of q are multiples of one that is `constant + square q^2` where the
@@ -105,6 +116,7 @@ impl Scales {
         self.tiles.clear();
         reserve_to(&mut self.tiles, 2 * SAMPLE);
         reserve_to(&mut self.numbers, 4 * SAMPLE);
+        reserve_to(&mut self.steep, STEEP_ONES);
     }
 
     /// Looks at cells that have most of their usual pixels, as have those on either side of them.
@@ -139,7 +151,15 @@ impl Scales {
 
     /// The errors that explain what was seen; none if too little was.
     pub(crate) fn errors(&mut self, space: Space, rounding: &Rounding) -> Option<Errors> {
-        let Scales { bends: [fine, middle, coarse], tiles, numbers } = self;
+        vectorised(
+            #[inline(always)]
+            || self.errors_of(space, rounding),
+        )
+    }
+
+    #[inline(always)]
+    fn errors_of(&mut self, space: Space, rounding: &Rounding) -> Option<Errors> {
+        let Scales { bends: [fine, middle, coarse], tiles, numbers, steep: memory } = self;
         if fine.len() < FEW {
             return None;
         }
@@ -158,11 +178,8 @@ impl Scales {
         };
         let (of_flat, of_steep) = (of(flat, numbers), of(steep, numbers));
         let excess = of_steep - STEEP * of_flat;
-        let ray = if excess > 0.0 {
-            ray_of(steep, numbers, |bend| of_flat * facing(bend.q) + shared(bend, 4.0))
-        } else {
-            0.0
-        };
+        let ray =
+            if excess > 0.0 { ray_of(steep, memory, |bend| of_flat * facing(bend.q) + shared(bend, 4.0)) } else { 0.0 };
         let level = if ray > 0.0 { of_flat.sqrt() } else { 1.0 };
         let found = Errors { constant: constant * level, square: square * level, ray, white: 4.0, smooth: 0.25 };
         let variance = |q: f32, slope: f32| found.variance(q.into(), slope.into()) + floor(q.into(), rounding);
@@ -192,6 +209,7 @@ impl Errors {
     pub(crate) const NONE: Errors = Errors { constant: 0.0, square: 0.0, ray: 0.0, white: 4.0, smooth: 0.25 };
 
     /// Variance of the mean over a tile.
+    #[inline(always)]
     pub(crate) fn variance(&self, q: f64, slope: f64) -> f64 {
         let sigma = self.constant + self.square * q * q;
         sigma * sigma + self.ray * self.ray * slope
@@ -209,12 +227,14 @@ impl Errors {
 }
 
 /// Variance of the mean over a tile that rounding and single precision make at least.
+#[inline(always)]
 fn floor(q: f64, rounding: &Rounding) -> f64 {
     let single = 2e-7 * q;
     rounding.variance(q) / 16.0 + single * single
 }
 
 /// Variance that rounding makes of the mean over a cell of so many pixels a side, where a slope passes few steps in it.
+#[inline(always)]
 fn shared(bend: &Bend, side: f64, rounding: &Rounding, scatter: f64) -> f64 {
     let square = rounding.step(bend.q.into()).powi(2);
     let level = square / (square + side * side * f64::from(bend.slope) + f64::MIN_POSITIVE);
@@ -223,6 +243,7 @@ fn shared(bend: &Bend, side: f64, rounding: &Rounding, scatter: f64) -> f64 {
 
 /// Constant and square of the error, by its scatter in stretches of q: the ratio of both that leaves the least in the
 /// logarithm of the variance.
+#[inline(always)]
 fn shape(bends: &mut [Bend], numbers: &mut Vec<f32>, space: Space) -> [f64; 2] {
     let size = bends.len().div_ceil(STRETCHES);
     let mut points = [(0.0, 0.0); STRETCHES];
@@ -233,7 +254,7 @@ fn shape(bends: &mut [Bend], numbers: &mut Vec<f32>, space: Space) -> [f64; 2] {
         }
         let take = size.min(rest.len());
         if take < rest.len() {
-            rest.select_nth_unstable_by(take, |a, b| a.q.total_cmp(&b.q).then(a.square.total_cmp(&b.square)));
+            rest.select_nth_unstable_by_key(take, |bend| pair_order(bend.q, bend.square));
         }
         let (stretch, others) = rest.split_at_mut(take);
         let q = median(numbers, stretch.iter().map(|bend| bend.q));
@@ -262,28 +283,51 @@ fn shape(bends: &mut [Bend], numbers: &mut Vec<f32>, space: Space) -> [f64; 2] {
 }
 
 /// The ray that explains the scatter of steep tiles beside the error of flat ones, pixels, by halving.
-fn ray_of(steep: &[Bend], numbers: &mut Vec<f32>, flat: impl Fn(&Bend) -> f64) -> f64 {
-    let every = steep.len().div_ceil(512);
+#[inline(always)]
+fn ray_of(steep: &[Bend], memory: &mut Vec<Steep>, flat: impl Fn(&Bend) -> f64) -> f64 {
+    let every = steep.len().div_ceil(STEEP_ONES);
+    memory.clear();
+    memory.extend(steep.iter().step_by(every).map(|bend| Steep {
+        square: bend.square.into(),
+        slope: bend.slope.into(),
+        flat: flat(bend),
+    }));
+    let quarter = memory.len() / 4;
     let (mut low, mut high) = (0.0, RAY[1]);
     for _ in 0..8 {
         let ray: f64 = (low + high) / 2.0;
-        let ratio = |bend: &Bend| f64::from(bend.square) / (flat(bend) + ray * ray * f64::from(bend.slope));
-        let is_larger =
-            quantile(numbers, 0.25, steep.iter().step_by(every).map(|bend| ratio(bend) as f32)) < QUARTILE_OF_SQUARE;
-        (low, high) = if is_larger { (low, ray) } else { (ray, high) };
+        let ratio = |tile: &Steep| (tile.square / (tile.flat + ray * ray * tile.slope)) as f32;
+        let smaller = memory.iter().filter(|tile| f64::from(ratio(tile)) < QUARTILE_OF_SQUARE).count();
+        (low, high) = if smaller > quarter { (low, ray) } else { (ray, high) };
     }
     low
 }
 
 /// The median of numbers.
+#[inline(always)]
 fn median(memory: &mut Vec<f32>, numbers: impl Iterator<Item = f32>) -> f64 {
     quantile(memory, 0.5, numbers)
 }
 
 /// The number that a share of them lies below.
+#[inline(always)]
 fn quantile(memory: &mut Vec<f32>, share: f64, numbers: impl Iterator<Item = f32>) -> f64 {
     memory.clear();
     memory.extend(numbers);
     let at = (memory.len() as f64 * share) as usize;
     (*memory.select_nth_unstable_by(at, f32::total_cmp).1).into()
+}
+
+/// Bits of a number as a whole number in the order of [`f32::total_cmp`].
+#[inline(always)]
+fn order(number: f32) -> i32 {
+    let bits = number.to_bits() as i32;
+    bits ^ (((bits >> 31) as u32) >> 1) as i32
+}
+
+/// A number in the order of pairs: the first by [`f32::total_cmp`], then the second.
+#[inline(always)]
+fn pair_order(first: f32, second: f32) -> i64 {
+    let [first, second] = [first, second].map(|number| i64::from(order(number)));
+    (first << 32) + second
 }

@@ -12,7 +12,7 @@ use crate::group::{reserve_to, vectorised};
 use crate::parallel::{in_parts, in_rows};
 
 /// Pixels that get their labels together.
-const ABREAST: usize = 16;
+const ABREAST: usize = 32;
 /// Slots of the table of pairs that were just met; a power of two.
 const RECENT: usize = 256;
 
@@ -132,12 +132,12 @@ fn root(into: &[u16], mut label: u16) -> u16 {
 fn relabel(groups: &mut [[u16; ABREAST]], into: &[u16]) {
     let now = |label: u16| into.get(usize::from(label)).map_or(label, |&into| into);
     for group in groups {
-        // Most groups are of one region.
+        // Most groups are of one region, and most regions stay what they are.
         let first = group[0];
-        if group.iter().fold(true, |all, &label| all & (label == first)) {
-            *group = [now(first); ABREAST];
-        } else {
+        if *group != [first; ABREAST] {
             group.iter_mut().for_each(|label| *label = now(*label));
+        } else if now(first) != first {
+            *group = [now(first); ABREAST];
         }
     }
 }

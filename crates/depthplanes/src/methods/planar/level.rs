@@ -4,6 +4,7 @@
 //! means, and tiles' residuals about their own planes.
 
 use super::pyramid::Pyramid;
+use crate::group::vectorised;
 use crate::noise::scales::{Cell, Cells, Scales};
 
 impl Scales {
@@ -11,12 +12,12 @@ impl Scales {
     pub(super) fn look(&mut self, pyramid: &Pyramid) {
         self.prepare();
         let tiles = &pyramid.grids[0];
-        let (filled, pixels) = tiles
-            .sums
-            .n
-            .iter()
-            .fold((0u32, 0.0), |(filled, pixels), &n| (filled + u32::from(n > 0.0), pixels + f64::from(n)));
-        let usual = (pixels / f64::from(filled.max(1))) as f32;
+        let of_tile = |(filled, pixels), &n: &f32| (filled + u32::from(n > 0.0), pixels + n as u32);
+        let (filled, pixels) = vectorised(
+            #[inline(always)]
+            || tiles.sums.n.iter().fold((0, 0), of_tile),
+        );
+        let usual = (f64::from(pixels) / f64::from(filled.max(1))) as f32;
         for (level, grid) in pyramid.grids.iter().enumerate() {
             let sums = &grid.sums;
             let cell = |at: usize| Cell {

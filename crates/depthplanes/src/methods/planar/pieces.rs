@@ -69,12 +69,8 @@ impl Part {
                     own & !goes_on & ahead(below[0], word, 1) & !(right & under),
                     own & starts & behind(below[0], word) & !(behind(here[0], word) & under),
                 ];
-                for bit in bits(ways.iter().fold(0, |any, way| any | way)) {
-                    for (way, (to, between)) in ways.iter().zip(STEPS) {
-                        if way >> bit & 1 > 0 {
-                            self.list_pair([64 * word + bit, v], to, between, field, image, groups);
-                        }
-                    }
+                for (way, (to, between)) in ways.into_iter().zip(STEPS) {
+                    bits(way).for_each(|bit| self.list_pair([64 * word + bit, v], to, between, field, image, groups));
                 }
             }
         }

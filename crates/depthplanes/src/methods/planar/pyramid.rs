@@ -145,9 +145,8 @@ impl Cells<'_> {
         for level in 0..LEVELS {
             let (finer, coarser) = self.grids.split_at_mut(level);
             let grid = &mut coarser[0];
-            noise.variances(grid.sums.c, grid.variance);
-            let side = (super::tiles::SIDE << level) as f64;
-            noise.smooth_variances(grid.sums.c, grid.sums.a, grid.sums.b, side, grid.smooth);
+            let planes = [&*grid.sums.c, &*grid.sums.a, &*grid.sums.b];
+            noise.expect(planes, (SIDE << level) as f64, [&mut *grid.variance, &mut *grid.smooth]);
             for ((variance, &a), &b) in grid.variance.iter_mut().zip(&*grid.sums.a).zip(&*grid.sums.b) {
                 *variance += of_slope(ray, a, b);
             }

@@ -11,14 +11,14 @@ use super::thresholds::FLAT;
 pub(super) const SIDE: usize = 4;
 /// Cells that are computed at a time; a row of any size of cells has a multiple of them.
 pub(super) const LANES: usize = 8;
-/// One number of each of them.
-type Lanes = [f32; LANES];
+/// Tiles that are, which rows have more of.
+const ABREAST: usize = 2 * LANES;
 
 /// The middle of a tile's columns and rows from its own.
 const OFF: [f32; SIDE] = [-1.5, -0.5, 0.5, 1.5];
 
 /// Tiles of a row that are summed at a time.
-const PIECE: usize = 32 * LANES;
+const PIECE: usize = 16 * ABREAST;
 
 /// Memory for the pixels of some tiles of a row.
 pub(super) struct Pixels {
@@ -31,8 +31,8 @@ impl Pixels {
 
     /// The pixels of the tiles from one on.
     #[inline(always)]
-    fn from(&self, at: usize) -> [[&Lanes; SIDE]; SIDE] {
-        let mut out = [[&[0.0; LANES]; SIDE]; SIDE];
+    fn from(&self, at: usize) -> [[&[f32; ABREAST]; SIDE]; SIDE] {
+        let mut out = [[&[0.0; ABREAST]; SIDE]; SIDE];
         for (out, pixels) in out.as_flattened_mut().iter_mut().zip(self.by_place.as_flattened()) {
             *out = pixels[at..].first_chunk().expect("a multiple of so many");
         }
@@ -49,7 +49,7 @@ pub(super) fn sum_tiles(q: &[f32], row: usize, pixels: &mut Pixels, halves: &mut
         for (q, by_column) in q.chunks_exact(stride).zip(&mut pixels.by_place) {
             part_columns(&q[first..end], halves, by_column);
         }
-        for at in (0..(end - first) / SIDE).step_by(LANES) {
+        for at in (0..(end - first) / SIDE).step_by(ABREAST) {
             grid.put(row, first / SIDE + at, tiles(pixels.from(at)));
         }
     }
@@ -90,20 +90,20 @@ pub(super) fn sum_cells(parts: &GridRows<'_>, row: usize, side: usize, grid: &mu
 
 /// The sums of tiles that lie side by side, from each of their pixels.
 #[inline(always)]
-fn tiles(pixels: [[&Lanes; SIDE]; SIDE]) -> Sums<Lanes> {
+fn tiles(pixels: [[&[f32; ABREAST]; SIDE]; SIDE]) -> Sums<[f32; ABREAST]> {
     // Where all pixels are valid, half of the sums are known.
-    let mut sums = [0.0; LANES];
+    let mut sums = [0.0; ABREAST];
     for pixels in pixels.as_flattened() {
-        (0..LANES).for_each(|t| sums[t] += pixels[t]);
+        (0..ABREAST).for_each(|t| sums[t] += pixels[t]);
     }
     let is_whole = sums.iter().fold(true, |all, sum| all & sum.is_finite());
     if is_whole { tiles_of::<true>(pixels) } else { tiles_of::<false>(pixels) }
 }
 
 #[inline(always)]
-fn tiles_of<const WHOLE: bool>(pixels: [[&Lanes; SIDE]; SIDE]) -> Sums<Lanes> {
+fn tiles_of<const WHOLE: bool>(pixels: [[&[f32; ABREAST]; SIDE]; SIDE]) -> Sums<[f32; ABREAST]> {
     let mut out = no_sums();
-    for t in 0..LANES {
+    for t in 0..ABREAST {
         let mut q = [[0.0; SIDE]; SIDE];
         let mut w = [[0.0; SIDE]; SIDE];
         for row in 0..SIDE {
@@ -184,7 +184,7 @@ fn spread([a, b, c, d]: &[f32; SIDE]) -> f32 {
 
 /// The sums of cells that lie side by side, from their parts in two rows.
 #[inline(always)]
-fn cells(parts: &Sums<&mut [f32]>, rows: [usize; 2], half: f32) -> Sums<Lanes> {
+fn cells(parts: &Sums<&mut [f32]>, rows: [usize; 2], half: f32) -> Sums<[f32; LANES]> {
     let part = |numbers| rows.map(|first| pairs(numbers, first));
     let (pn, pu, pv, puu, puv, pvv) =
         (part(parts.n), part(parts.u), part(parts.v), part(parts.uu), part(parts.uv), part(parts.vv));
@@ -252,7 +252,7 @@ fn own(squares: f32) -> f32 {
     if squares.is_finite() { squares } else { 0.0 }
 }
 
-impl Sums<Lanes> {
+impl<const N: usize> Sums<[f32; N]> {
     /// Sets a cell's numbers; one without a plane has no pixels.
     #[inline(always)]
     fn put(&mut self, t: usize, numbers: [f32; 11], is_determined: bool) {
@@ -266,10 +266,10 @@ impl Sums<Lanes> {
 impl GridRows<'_> {
     /// Writes the numbers of cells that lie side by side.
     #[inline(always)]
-    fn put(&mut self, row: usize, column: usize, mut sums: Sums<Lanes>) {
+    fn put<const N: usize>(&mut self, row: usize, column: usize, mut sums: Sums<[f32; N]>) {
         let at = row * self.columns + column;
         for (numbers, lanes) in self.sums.each().into_iter().zip(sums.each()) {
-            numbers[at..at + LANES].copy_from_slice(lanes);
+            numbers[at..at + N].copy_from_slice(lanes);
         }
     }
 
@@ -304,8 +304,8 @@ fn larger(a: f32, b: f32) -> f32 {
 }
 
 #[inline(always)]
-fn no_sums() -> Sums<Lanes> {
-    Sums::of([[0.0; LANES]; 11])
+fn no_sums<const N: usize>() -> Sums<[f32; N]> {
+    Sums::of([[0.0; N]; 11])
 }
 
 /// A least-squares plane about a cell's middle.
