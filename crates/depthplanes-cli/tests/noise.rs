@@ -138,13 +138,11 @@ fn the_flags_it_prints_find_the_surfaces_of_recorded_frames_as_no_flags_do() {
         let stated: Vec<&str> = reading.iter().copied().chain(flags).collect();
         let plain = surfaces(&bench, Path::new(&depth), &reading, &coplanar);
         let told = surfaces(&bench, Path::new(&depth), &stated, &coplanar);
-        // One frame, whose clutter passes for rays, loses three of its five surfaces.
-        assert!(told.correct + 3 >= plain.correct, "{name}: {told:?} with the flags, {plain:?} without");
+        assert!(told.correct + 1 >= plain.correct, "{name}: {told:?} with the flags, {plain:?} without");
         without += plain;
         with += told;
     }
     let [without, with] = [without, with].map(|counts| 100.0 * counts.correct_share().unwrap());
     println!("{with:.1} % of the surfaces are correct with the flags, {without:.1} % without");
-    // They should lose nothing: 85.3 to 88.8 %, see docs/noise.md.
-    assert!(with >= without - 4.0, "{with} % with the flags, {without} % without");
+    assert!(with >= without, "{with} % with the flags, {without} % without");
 }

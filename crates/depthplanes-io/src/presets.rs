@@ -97,7 +97,7 @@ impl SensorPreset {
     }
 
     const fn kinect(self) -> Self {
-        self.noise(KINECT).smooth_noise(KINECT_SMOOTH)
+        self.smooth_noise(KINECT_SMOOTH)
     }
 
     const fn missing(mut self, value: f64) -> Self {
@@ -106,32 +106,23 @@ impl SensorPreset {
     }
 }
 
-/// Structured light of the PrimeSense kind: 0.042 px of disparity by pixel and 0.060 px that neighbours share, with f T of
-/// 575 px 0.075 m. Residuals of 85 labelled planes of Kinect v1 and Xtion about their own planes, 2026-11-28: 0.092 px by
-/// pixel, of which 0.042 vary from pixel to pixel, and means over 16 x 16 pixels scatter by 0.059. The white part has the
-/// rounding to 1/8 px in it; without it 0.022 px are left, 0.17 of the raw steps. (Half a level of the raw disparity is 1.425e-3 z^2 m: Khoshelham and Elberink 2012.)
-const KINECT: PresetNoise = PresetNoise::Depth { base: 0.0, growth: 9.7e-4 };
-const KINECT_SMOOTH: PresetNoise = PresetNoise::Depth { base: 0.0, growth: 1.4e-3 };
+/// The smooth part of structured light of the PrimeSense kind: 0.039 px of disparity with f T of 575 px 0.075 m. The median
+/// over 102 frames of Kinect v1 and Xtion from eight collections, 2026-11-28, of what `depthplanes noise` finds of each: 1.8
+/// to 10 mm at 2 m, median 3.55. (Residuals of 85 labelled planes of such frames scatter by 0.060 px in means over 16 x 16 pixels:
+/// about a whole plane bows count as well.) The white part is 3.1 mm at 2 m there, 0.034 px, which is no more than rounding to 1/8 px makes: it is
+/// found with the steps of each map and not stated. (Half a level of the raw disparity is 1.425e-3 z^2 m: Khoshelham and
+/// Elberink 2012.)
+const KINECT_SMOOTH: PresetNoise = PresetNoise::Depth { base: 0.0, growth: 8.9e-4 };
 
 /// Scanners of ABW's kind, beside the steps of 1.26 to 1.29 mm that its maps show: the one of the values
 /// tried with which most regions of the ten test images are correct, 2026-11-28: 16.8 of 19.2, beside 16.7 by the estimate
 /// and 15.9 with 1.2 mm. The smooth part is estimated; stated, it is no better.
 const SCANNER: PresetNoise = PresetNoise::Depth { base: 5.0e-4, growth: 0.0 };
 
-/// Kinect v2: `1.5 - 0.5 z + 0.3 z^2 + 0.1 z^1.5 t^2 / (pi/2 - t)^2` mm for a surface seen at the angle t (Fankhauser et
-/// al. 2015, "Kinect v2 for Mobile Robot Navigation: Evaluation and Modeling"), here for 60 degrees, where the last
-/// term is 0.4 z^1.5: a surface seen head-on has less, 1.7 instead of 2.83 mm at 2 m.
-const KINECT2: PresetNoise = PresetNoise::Table(&[
-    [0.5, 1.47e-3],
-    [1.0, 1.70e-3],
-    [1.5, 2.16e-3],
-    [2.0, 2.83e-3],
-    [2.5, 3.71e-3],
-    [3.0, 4.78e-3],
-    [3.5, 6.04e-3],
-    [4.0, 7.50e-3],
-    [4.5, 9.14e-3],
-]);
+/// Kinect v2: the mean of what `depthplanes noise` finds of two frames of stairs at 1 to 3 m, 2026-11-28, 0.50 and 0.72 mm at
+/// range 0 and 0.63 mm (z / 1 m)^2 both: 1.2 mm at 1 m, 3.1 mm at 2 m. Fankhauser et al. 2015 ("Kinect v2 for Mobile Robot Navigation:
+/// Evaluation and Modeling") have 1.7 and 2.8 mm for a surface seen at 60 degrees, 1.3 and 1.7 mm head-on.
+const KINECT2: PresetNoise = PresetNoise::Depth { base: 6.1e-4, growth: 6.3e-4 };
 
 /// Rendered depth has no noise, but ICL-NUIM's frames come in steps of 1 mm and scatter by 0.29 mm beyond what that
 /// rounding does, as if they were rounded twice (ten frames, docs/noise.md).
@@ -149,8 +140,7 @@ pub const SENSOR_PRESETS: &[SensorPreset] = &[
         .kinect(),
     preset("kinect1-raw", "kinect-raw", "Kinect v1: raw 11-bit disparity, S. Burrus' calibration")
         .camera(640, 480, [594.21, 591.04, 339.31, 242.74])
-        .noise(PresetNoise::Value { sigma: 0.17 })
-        .smooth_noise(PresetNoise::Value { sigma: 0.48 }),
+        .smooth_noise(PresetNoise::Value { sigma: 0.31 }), // 0.039 px
     preset("kinect1-sdk", "kinect-sdk", "Kinect v1: Microsoft SDK 1 depth with player bits")
         .camera(640, 480, [571.26, 571.26, 320.0, 240.0])
         .kinect(),

@@ -152,11 +152,13 @@ fn formula(noise: SensorNoise) -> String {
     }
 }
 
-/// The flags of `detect` for this noise and ray; `None` if all are what it would expect without them.
+/// The flags of `detect` for this noise and ray; `None` if all are what it would expect without them. A part that rounding
+/// makes is not told, since `detect` finds the rounding by itself.
 fn flags(estimate: &Estimate) -> Option<String> {
-    let flag = |name: &str, value: f64| format!("--{name} {}", significant(value));
+    // In full: on clutter the fourth digit may decide whether two pieces are one.
+    let flag = |name: &str, value: f64| format!("--{name} {}", (value as f32) + 0.0);
     let mut flags = Vec::new();
-    for (part, noise) in [("noise", estimate.noise), ("smooth-noise", estimate.smooth)] {
+    for (part, noise) in [("noise", estimate.beside_rounding), ("smooth-noise", estimate.smooth)] {
         match noise {
             SensorNoise::Depth { base, growth } if base + growth > 1e-9 => {
                 flags.extend([flag(part, base), flag(&format!("{part}-growth"), growth)]);
@@ -165,6 +167,6 @@ fn flags(estimate: &Estimate) -> Option<String> {
             _ => (),
         }
     }
-    flags.extend(estimate.ray.map(|ray| format!("--ray {ray:.2}")));
+    flags.extend(estimate.ray.map(|ray| flag("ray", ray)));
     (!flags.is_empty()).then(|| flags.join(" "))
 }

@@ -12,6 +12,7 @@ use crate::camera::{Measure, Sensor};
 use crate::error::{Error, Result};
 use crate::fit::Moments;
 use crate::map::{AnyView, DepthView, Pixel};
+use crate::methods::{COLUMNS, ROWS};
 use crate::with_view;
 
 /// A sensor's noise as frames of it show it.
@@ -20,6 +21,9 @@ pub struct Estimate {
     /// The white part, which differs from pixel to pixel: [`SensorNoise::Depth`] of depth maps, [`SensorNoise::Value`] of
     /// all others.
     pub noise: SensorNoise,
+    /// The white part without what rounding makes of it, which differs from `noise` where the sensor's own steps are longer
+    /// than those of the map's numbers: what `planar` has to be told, since it finds the rounding by itself. 0 where rounding makes more than a fiftieth of it.
+    pub beside_rounding: SensorNoise,
     /// The smooth part, which neighbouring pixels share; of the same kind.
     pub smooth: SensorNoise,
     /// The steps that the values come in, map units, the finest of all frames; 0 for values that are not rounded.
@@ -96,7 +100,9 @@ impl Estimator {
     fn look<T: Pixel>(&mut self, map: &DepthView<'_, T>, space: Space) -> f64 {
         let mut usual = 0.0;
         for (level, side) in SIDES.into_iter().enumerate() {
-            let (columns, rows) = (map.width() / side, map.height() / side);
+            // As many as `planar` has, and so the same ones are looked at.
+            let [columns, rows] =
+                [(map.width(), COLUMNS), (map.height(), ROWS)].map(|(length, of)| length.next_multiple_of(of) / side);
             let cells: Vec<Cell> = (0..columns * rows)
                 .map(|at| cell(map, space, [at % columns * side, at / columns * side], side))
                 .collect();
@@ -125,7 +131,8 @@ impl Estimator {
         let range = self.range();
         let ray = Some(errors.white * errors.ray).filter(|ray| *ray > 0.0);
         let (noise, smooth) = (white(&errors, range, space, step), errors.times(errors.smooth, space));
-        Ok(Estimate { noise, smooth, step, blocks, measure, range, ray })
+        let beside_rounding = beside_rounding(&errors, range, space, &rounding);
+        Ok(Estimate { noise, beside_rounding, smooth, step, blocks, measure, range, ray })
     }
 
     /// The q that a fortieth of the blocks lie below and above.
@@ -144,6 +151,26 @@ fn white(errors: &Errors, [low, high]: [f64; 2], space: Space, step: f64) -> Sen
     errors.times(errors.white * own.sqrt(), space)
 }
 
+/// Share of the white part's variance that has to be left beside rounding. Where rounding makes more, what is left is not
+/// known as well, and one growth over the range does not say it.
+const LEFT: f64 = 0.98;
+
+/// The white part without what rounding makes of it, by what is left at both ends of a range of q: one growth over the
+/// range has what is left another than what is seen. None where rounding makes most of it.
+fn beside_rounding(errors: &Errors, [low, high]: [f64; 2], space: Space, rounding: &Rounding) -> SensorNoise {
+    let [at_low, at_high] = [low, high].map(|q| {
+        let white = errors.white.powi(2) * errors.variance(q, 0.0);
+        Some(white - rounding.variance(q)).filter(|left| *left > LEFT * white).map(f64::sqrt)
+    });
+    let (Some(at_low), Some(at_high)) = (at_low, at_high) else { return errors.times(0.0, space) };
+    let square = match space {
+        Space::InverseDepth { .. } if high > low => ((at_high - at_low) / (high * high - low * low)).max(0.0),
+        _ => 0.0,
+    };
+    let constant = (0.5 * (at_low + at_high - square * (low * low + high * high))).max(0.0);
+    Errors { constant, square, ..*errors }.times(1.0, space)
+}
+
 impl NoiseModel {
     /// Of one map: the sensor's noise as stated, or else the white part as the map shows it; none where it shows nothing.
     pub(crate) fn of_map<T: Pixel>(map: &DepthView<'_, T>, sensor: &Sensor) -> Self {
@@ -160,21 +187,25 @@ impl NoiseModel {
     }
 }
 
-/// A square of so many pixels a side, from its first (u, v).
+/// A square of so many pixels a side, from its first (u, v), as far as it lies on the map. As in `planar`, tiles whose pixels
+/// lie on one line have no part in it.
 fn cell<T: Pixel>(map: &DepthView<'_, T>, space: Space, [u, v]: [usize; 2], side: usize) -> Cell {
-    let (validity, middle) = (map.validity(), (side as f64 - 1.0) / 2.0);
-    let (mut sums, mut origin) = (Moments::default(), 0.0);
-    for dv in 0..side {
-        for (du, &value) in map.row(v + dv)[u..u + side].iter().enumerate() {
-            if validity.holds(value) {
-                let q = space.q(value.into());
-                if sums.n == 0.0 {
-                    origin = q;
-                }
-                sums.add(du as f64 - middle, dv as f64 - middle, q - origin);
-            }
+    let middle = (side as f64 - 1.0) / 2.0;
+    let mut sums = Moments::default();
+    let mut origin = None;
+    let tiles = side / SIDES[0];
+    for at in 0..tiles * tiles {
+        let [du, dv] = [at % tiles * SIDES[0], at / tiles * SIDES[0]];
+        let mut tile = Moments::default();
+        for [u, v, q] in pixels(map, space, [u + du, v + dv]) {
+            let off = q - *origin.get_or_insert(q);
+            tile.add(du as f64 + u - middle, dv as f64 + v - middle, off);
+        }
+        if tile.fit().is_some() {
+            sums.merge(&tile);
         }
     }
+    let origin = origin.unwrap_or(0.0);
     match sums.fit() {
         Some(fit) => {
             let [a, b, c] = fit.abc;
@@ -186,4 +217,13 @@ fn cell<T: Pixel>(map: &DepthView<'_, T>, space: Space, [u, v]: [usize; 2], side
         }
         None => Cell { n: 0.0, abc: [0.0; 3], squares: 0.0 },
     }
+}
+
+/// The valid pixels of a tile: columns and rows from its first pixel, which has that (u, v), and q.
+fn pixels<T: Pixel>(map: &DepthView<'_, T>, space: Space, [u, v]: [usize; 2]) -> impl Iterator<Item = [f64; 3]> {
+    let [columns, rows] = [(u, map.width()), (v, map.height())].map(|(first, end)| first..end.min(first + SIDES[0]));
+    let validity = map.validity();
+    rows.flat_map(move |row| columns.clone().map(move |column| (column, row, map.row(row)[column])))
+        .filter(move |(.., value)| validity.holds(*value))
+        .map(move |(column, row, value)| [(column - u) as f64, (row - v) as f64, space.q(value.into())])
 }

@@ -58,6 +58,7 @@ use curved::{Facets, Optics};
 use enlarged::Source;
 use explained::Explainer;
 use field::Field;
+pub(crate) use field::{COLUMNS, ROWS};
 use grow::{Region, Regions};
 use merge::Merger;
 use pieces::Pieces;
@@ -195,7 +196,8 @@ impl Planar {
                 let [ray, smooth_ray] = [shown.white, shown.smooth].map(|factor| scale * factor * shown.ray);
                 white.with_ray(ray.max(RAY[0])).with_smooth(smooth, smooth_ray)
             }
-            ray => white.with_ray(ray).with_smooth(smooth, 0.0),
+            // Of its error the same share is smooth as of the noise that the map shows.
+            ray => white.with_ray(ray).with_smooth(smooth, ray * shown.smooth / shown.white),
         }
     }
 
