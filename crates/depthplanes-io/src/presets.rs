@@ -107,7 +107,7 @@ impl SensorPreset {
 }
 
 /// The smooth part of structured light of the PrimeSense kind: 0.039 px of disparity with f T of 575 px 0.075 m. The median
-/// over 102 frames of Kinect v1 and Xtion from eight collections, 2026-11-28, of what `depthplanes noise` finds of each: 1.8
+/// over 102 frames of Kinect v1 and Xtion from seven collections, 2026-11-28, of what `depthplanes noise` finds of each: 1.8
 /// to 10 mm at 2 m, median 3.55. (Residuals of 85 labelled planes of such frames scatter by 0.060 px in means over 16 x 16 pixels:
 /// about a whole plane bows count as well.) The white part is 3.1 mm at 2 m there, 0.034 px, which is no more than rounding to 1/8 px makes: it is
 /// found with the steps of each map and not stated. (Half a level of the raw disparity is 1.425e-3 z^2 m: Khoshelham and

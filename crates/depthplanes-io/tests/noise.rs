@@ -58,11 +58,12 @@ fn a_stated_noise_goes_before_the_presets_and_must_suit_the_map() {
     // Each part by itself.
     let of_preset = presets::by_name("kinect1").unwrap().smooth_noise.unwrap().of();
     assert_eq!(sensor.smooth_noise, of_preset);
-    let smooth = ReadOptions { smooth_noise: Some(table), noise: None, ..stated };
+    let preset = Some("kinect2".into());
+    let smooth = ReadOptions { preset, smooth_noise: Some(table), noise: None, ..stated };
     let sensor = decode(MAP, "x", &smooth).unwrap().sensor;
     assert_eq!(
         (sensor.noise, sensor.smooth_noise),
-        (presets::by_name("kinect1").unwrap().noise.unwrap().of(), Some(table))
+        (presets::by_name("kinect2").unwrap().noise.unwrap().of(), Some(table))
     );
     let disparity = ReadOptions { encoding: Some("kitti".into()), noise: Some(table), ..Default::default() };
     let error = decode(MAP, "x", &disparity).unwrap_err();

@@ -13,6 +13,7 @@ mod steps;
 mod table;
 
 pub use enlarged::{Enlargement, EnlargementFinder};
+pub(crate) use estimate::PADDED;
 pub use estimate::{Estimate, Estimator};
 pub use rounding::{Rounding, RoundingFinder};
 pub(crate) use steps::Steps;

@@ -77,17 +77,17 @@ fn too_little_to_estimate_from_is_an_error() {
     assert_eq!(estimator.estimate(), too_few(0));
     estimator.add(DepthView::new(&[0u16; 9600], 120, 80).unwrap(), METRES).unwrap();
     assert_eq!(estimator.estimate(), too_few(0));
-    // Two rows of blocks have none between others.
-    estimator.add(DepthView::new(&[900u16; 11 * 800], 800, 11).unwrap(), METRES).unwrap();
+    // One row of blocks has none between others.
+    estimator.add(DepthView::new(&[900u16; 4 * 800], 800, 4).unwrap(), METRES).unwrap();
     assert_eq!(estimator.estimate(), too_few(0));
-    estimator.add(DepthView::new(&[900u16; 12 * 32], 32, 12).unwrap(), METRES).unwrap();
-    assert_eq!(estimator.estimate(), too_few(12));
+    estimator.add(DepthView::new(&[900u16; 12 * 24], 12, 24).unwrap(), METRES).unwrap();
+    assert_eq!(estimator.estimate(), too_few(13));
     let mixed = estimator.add(DepthView::new(&[9u8; 144], 12, 12).unwrap(), Measure::Disparity);
     assert_eq!(mixed, Err(Error::MixedMeasures));
     for _ in 0..2 {
         estimator.add(DepthView::new(&[9.0f32; 144], 12, 12).unwrap(), Measure::Depth { metres: 0.001 }).unwrap();
     }
-    assert_eq!(estimator.estimate().unwrap().blocks, 16);
+    assert_eq!(estimator.estimate().unwrap().blocks, 21);
 }
 
 #[test]

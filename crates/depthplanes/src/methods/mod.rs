@@ -31,7 +31,6 @@ use crate::map::AnyView;
 
 pub use ngaf::Ngaf;
 pub use planar::Planar;
-pub(crate) use planar::{COLUMNS, ROWS};
 
 /// All methods. The first is the default.
 pub static METHODS: &[&MethodInfo] = &[

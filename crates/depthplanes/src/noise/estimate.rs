@@ -12,8 +12,10 @@ use crate::camera::{Measure, Sensor};
 use crate::error::{Error, Result};
 use crate::fit::Moments;
 use crate::map::{AnyView, DepthView, Pixel};
-use crate::methods::{COLUMNS, ROWS};
 use crate::with_view;
+
+/// Columns and rows that maps are filled up to a multiple of, as in `planar`.
+pub(crate) const PADDED: [usize; 2] = [128, 16];
 
 /// A sensor's noise as frames of it show it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,8 +103,8 @@ impl Estimator {
         let mut usual = 0.0;
         for (level, side) in SIDES.into_iter().enumerate() {
             // As many as `planar` has, and so the same ones are looked at.
-            let [columns, rows] =
-                [(map.width(), COLUMNS), (map.height(), ROWS)].map(|(length, of)| length.next_multiple_of(of) / side);
+            let [columns, rows] = [(map.width(), PADDED[0]), (map.height(), PADDED[1])]
+                .map(|(length, of)| length.next_multiple_of(of) / side);
             let cells: Vec<Cell> = (0..columns * rows)
                 .map(|at| cell(map, space, [at % columns * side, at / columns * side], side))
                 .collect();

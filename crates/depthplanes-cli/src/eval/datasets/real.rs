@@ -107,7 +107,7 @@ mod tests {
             assert_eq!(frame.sensor.measure, Measure::Depth { metres: 0.001 });
             assert_eq!((frame.sensor.intrinsics.unwrap().fy, frame.missing), (501.0, Some(7000.0)));
             assert_eq!((items[0].truth.as_ref().unwrap())().unwrap().partial, Some(vec![vec![1, 2]]));
-            frame.sensor.noise.is_some()
+            frame.sensor.smooth_noise.is_some()
         };
         assert_eq!((read(false), read(true)), (false, true));
         std::fs::remove_dir_all(folder).unwrap();

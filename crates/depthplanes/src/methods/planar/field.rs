@@ -9,9 +9,9 @@ use crate::map::{DepthView, Pixel, Validity};
 use crate::noise::Space;
 
 /// Columns of the coarsest cells that are summed at a time.
-pub(crate) const COLUMNS: usize = LANES * ROWS;
+pub(super) const COLUMNS: usize = LANES * ROWS;
 /// Rows of the coarsest cells.
-pub(crate) const ROWS: usize = SIDE << (LEVELS - 1);
+pub(super) const ROWS: usize = SIDE << (LEVELS - 1);
 
 /// A map in q; NaN where nothing was measured and beyond the map's edge.
 #[derive(Debug, Default)]

@@ -48,7 +48,7 @@ use crate::explanation::Explanation;
 use crate::group::Grouper;
 use crate::map::{AnyView, DepthView, Pixel};
 use crate::noise::scales::{Errors, RAY, Scales};
-use crate::noise::{NoiseModel, Rounding, RoundingFinder, SensorNoise, Space};
+use crate::noise::{NoiseModel, PADDED, Rounding, RoundingFinder, SensorNoise, Space};
 use crate::parallel::side_by_side;
 use crate::with_view;
 use bent::Bent;
@@ -58,7 +58,6 @@ use curved::{Facets, Optics};
 use enlarged::Source;
 use explained::Explainer;
 use field::Field;
-pub(crate) use field::{COLUMNS, ROWS};
 use grow::{Region, Regions};
 use merge::Merger;
 use pieces::Pieces;
@@ -148,6 +147,9 @@ pub struct Planar {
     /// How far from a plane its pixels may lie, standard deviations, 0.5..=100.
     pub confidence: f64,
 }
+
+/// What `depthplanes noise` looks at is what is looked at here.
+const _: () = assert!(PADDED[0] == field::COLUMNS && PADDED[1] == field::ROWS);
 
 impl Planar {
     fn from_values(values: &[f64]) -> Self {
