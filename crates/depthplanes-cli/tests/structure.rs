@@ -44,7 +44,8 @@ fn files_with(folder: &str, words: &[&str]) -> Vec<String> {
 #[test]
 fn the_library_asks_nothing_of_the_outside() {
     let outside = ["std::fs", "std::env", "std::time", "std::io", "std::net", "std::process", "RandomState", "HashMap"];
-    assert_eq!(files_with("crates/depthplanes/src", &outside), [""; 0]);
+    // But for the build that `make ablate` makes.
+    assert_eq!(files_with("crates/depthplanes/src", &outside), ["methods/planar/switches.rs"]);
 }
 
 #[test]

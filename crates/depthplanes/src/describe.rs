@@ -163,8 +163,6 @@ impl Describer {
             }
             _ => (),
         }
-        let noise = seen.noise.map(|noise| self.as_residuals_show(noise, sensor));
-        let seen = &Seen { noise: noise.as_ref(), ..*seen };
         planes.extend((1..).zip(&self.tallies).map(|(label, tally)| {
             let fit =
                 tally.fit.map(|fit| MapFit { gradient: [fit.abc[0], fit.abc[1]], offset: fit.abc[2], rms: fit.rms });
@@ -183,7 +181,7 @@ impl Describer {
 
     /// The noise, a smooth part that was estimated being as large as the residuals of all planes together show it: the
     /// estimate from neighbouring cells misses what is smooth over far more than these.
-    fn as_residuals_show(&self, noise: &NoiseModel, sensor: &Sensor) -> NoiseModel {
+    pub fn as_residuals_show(&self, noise: &NoiseModel, sensor: &Sensor) -> NoiseModel {
         if !noise.is_smooth_shown() {
             return *noise;
         }

@@ -88,7 +88,9 @@ impl Finisher {
         job.done("select");
         let runs = selection.runs(groups);
         describer.tally(map, runs, 0, &job.sensor, job.threads);
-        let seen = Seen { sensor: &job.sensor, noise, valid_pixels };
+        // Of all planes, before some of them are joined.
+        let noise = noise.map(|noise| describer.as_residuals_show(noise, &job.sensor));
+        let seen = Seen { sensor: &job.sensor, noise: noise.as_ref(), valid_pixels };
         describer.describe(map, runs, &seen, job.threads, &mut out.planes);
         let mut records = Records { map, groups, margin: 0, seen, threads: job.threads, selection, describer };
         records.join(job.joiner.as_deref_mut(), out);

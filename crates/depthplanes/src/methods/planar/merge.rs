@@ -287,8 +287,8 @@ fn weigh(pairs: &mut [Pair], all: &[Region], rays: &Rays, threads: usize) {
         for pair in pairs {
             let [a, b] = pair.ids.map(|id| &all[id as usize]);
             let cost = bend(a, b);
-            let is_one =
-                cost <= 1.0 || (cost <= BOWED_MERGE && is_on("bowed-merge") && goes_on(a, b, pair.middle(), rays));
+            let bowed = BOWED_MERGE * a.excess().max(b.excess()).max(1.0);
+            let is_one = cost <= 1.0 || (cost <= bowed && is_on("bowed-merge") && goes_on(a, b, pair.middle(), rays));
             pair.cost = if is_one { cost } else { f64::INFINITY };
         }
     };

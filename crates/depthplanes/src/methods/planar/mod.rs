@@ -386,10 +386,10 @@ impl Runner {
         self.merger.drop_small(&mut self.pyramid.grids[0], &mut self.regions, self.params.least(), threads)
     }
 
-    /// How many times the smooth part large regions show that was estimated, if more than once; none where it is stated.
+    /// How many times the smooth part large regions show that is expected of patches, if more than once.
     fn smooth_shown(&mut self, rays: &Rays, job: &Job<'_>) -> Option<f64> {
         let Runner { params, pyramid, regions, facets, shown, .. } = self;
-        if params.stated_smooth(&job.sensor).is_some() || !is_on("shown") {
+        if !is_on("shown") {
             return None;
         }
         pyramid.hand_up(job.threads);
