@@ -133,7 +133,8 @@ pub struct Planar {
     pub noise_growth: f64,
     /// Standard deviation of the part of the error that neighbouring pixels share over tens of pixels, in the units of
     /// `noise`: it does not average out within a surface. If this and `smooth_noise_growth` are 0, it is the sensor's
-    /// ([`crate::Sensor::smooth_noise`]), or else estimated from each map.
+    /// ([`crate::Sensor::smooth_noise`]), or else estimated from each map. What large regions of a map show beyond it counts
+    /// as well.
     pub smooth_noise: f64,
     /// What that of depth grows by with the square of the range, 1/m; not used for disparity.
     pub smooth_noise_growth: f64,
