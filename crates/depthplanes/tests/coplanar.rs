@@ -268,6 +268,6 @@ fn pieces_of_one_plane_of_a_room_are_joined_and_others_are_nearly_coplanar() {
     println!("{together} of {same} pairs of one plane joined, {apart} of two planes, {wrong} of them wrong");
     assert!(100 * together >= 65 * same);
     // Two narrow planes that noise hides the crease of are one before, and look like a third.
-    // It has been one; pieces that meet at up to 10 degrees without a step may be one that bows.
+    // It has been one; pieces that meet at up to 8 degrees without a step may be one that bows.
     assert!(wrong <= 2, "{wrong}");
 }

@@ -121,10 +121,10 @@ impl Region {
             return false;
         }
         self.take(cell);
-        if self.sums.n >= REFIT * self.fitted_at {
-            if let Some(fit) = self.sums.fit() {
-                self.aim(fit.abc);
-            }
+        if self.sums.n >= REFIT * self.fitted_at
+            && let Some(fit) = self.sums.fit()
+        {
+            self.aim(fit.abc);
         }
         true
     }
@@ -342,6 +342,7 @@ impl Area<'_> {
         takes
     }
 
+    /// Gives a cell to a region and to the queue.
     #[inline(always)]
     fn give(&mut self, place: Place, id: u32) {
         let at = self.at(place);
