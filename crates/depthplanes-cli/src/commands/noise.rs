@@ -68,8 +68,11 @@ fn record(found: &[(String, Estimate)], all: &Estimate) -> String {
 }
 
 fn estimate_record(estimate: &Estimate) -> Value {
-    let (model, smooth) = (estimate.model(), estimate.smooth_model());
-    let at = |z: f64| json!({"range_m": z, "sigma_m": model.depth_sigma_m(z), "smooth_m": smooth.depth_sigma_m(z)});
+    let [model, smooth, wide] = [estimate.model(), estimate.smooth_model(), estimate.wide_model()];
+    let at = |z: f64| {
+        let [white, smooth, wide] = [&model, &smooth, &wide].map(|part| part.depth_sigma_m(z));
+        json!({"range_m": z, "sigma_m": white, "smooth_m": smooth, "wide_m": wide})
+    };
     let mut record = json!({
         "space": space(estimate.measure),
         "blocks": estimate.blocks,
@@ -78,7 +81,7 @@ fn estimate_record(estimate: &Estimate) -> Value {
         "ray_px": estimate.ray,
         "depth": RANGES_M.map(at),
     });
-    for (part, noise) in [("", estimate.noise), ("smooth_", estimate.smooth)] {
+    for (part, noise) in [("", estimate.noise), ("smooth_", estimate.smooth), ("wide_", estimate.wide)] {
         match noise {
             SensorNoise::Depth { base, growth } => {
                 record[format!("{part}base_m")] = json!(base);
@@ -115,16 +118,16 @@ fn readable(found: &[(String, Estimate)], all: &Estimate) -> String {
     };
     let mut text = aligned(&columns, &rows);
     text += &format!("\nStandard deviations of {what}: of single pixels, and of what neighbours share.{steps}\n");
-    text += &format!("All together: {} and {}.\n", formula(all.noise), formula(all.smooth));
+    text += &format!("All together: {} and {}.\n", formula(all.noise), formula(all.wide));
     text += &match flags(all) {
-        Some(flags) => format!("To use it: depthplanes detect {flags}\n"),
+        Some(flags) => format!("To use it (longer waves than 16 pixels it finds by itself): depthplanes detect {flags}\n"),
         None => "There is no noise beside rounding, and nothing to tell `detect`.\n".to_string(),
     };
     text
 }
 
 fn cells(name: &str, estimate: &Estimate) -> Vec<String> {
-    let (model, smooth) = (estimate.model(), estimate.smooth_model());
+    let (model, smooth) = (estimate.model(), estimate.wide_model());
     let mut cells = row([name, &estimate.blocks.to_string(), &range(estimate)]);
     cells.extend(RANGES_M.map(|z| match (model.depth_sigma_m(z), smooth.depth_sigma_m(z)) {
         (Some(white), Some(smooth)) => format!("{:.1} and {:.1} mm", 1e3 * white, 1e3 * smooth),

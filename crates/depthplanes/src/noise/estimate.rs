@@ -26,8 +26,12 @@ pub struct Estimate {
     /// The white part without what rounding makes of it, which differs from `noise` where the sensor's own steps are longer
     /// than those of the map's numbers: what `planar` has to be told, since it finds the rounding by itself. 0 where rounding makes more than a fiftieth of it.
     pub beside_rounding: SensorNoise,
-    /// The smooth part, which neighbouring pixels share; of the same kind.
+    /// The smooth part as means over 16 x 16 pixels show it, which neighbouring pixels share; of the same kind. What `planar`
+    /// has to be told: the longer waves it finds by itself.
     pub smooth: SensorNoise,
+    /// The smooth part as means over up to 32 x 32 pixels show it where no edge runs through them: with the longer waves of
+    /// it. `smooth` or more.
+    pub wide: SensorNoise,
     /// The steps that the values come in, map units, the finest of all frames; 0 for values that are not rounded.
     pub step: f64,
     /// Blocks of 4 x 4 pixels that were held against those on either side, along rows and along columns.
@@ -48,9 +52,14 @@ impl Estimate {
         NoiseModel::new(self.measure, self.noise, 0.0).expect("an estimate is of its own measure's kind")
     }
 
-    /// The model of the smooth part.
+    /// The model of the smooth part, over 16 pixels.
     pub fn smooth_model(&self) -> NoiseModel {
         NoiseModel::new(self.measure, self.smooth, 0.0).expect("an estimate is of its own measure's kind")
+    }
+
+    /// The model of the smooth part with its longer waves.
+    pub fn wide_model(&self) -> NoiseModel {
+        NoiseModel::new(self.measure, self.wide, 0.0).expect("an estimate is of its own measure's kind")
     }
 }
 
@@ -101,7 +110,7 @@ impl Estimator {
     /// Looks at a frame's cells; gives its steps.
     fn look<T: Pixel>(&mut self, map: &DepthView<'_, T>, space: Space) -> f64 {
         let mut usual = 0.0;
-        for (level, side) in SIDES.into_iter().enumerate() {
+        for (level, &side) in SIDES[..3].iter().enumerate() {
             // As many as `planar` has, and so the same ones are looked at.
             let [columns, rows] = [(map.width(), PADDED[0]), (map.height(), PADDED[1])]
                 .map(|(length, of)| length.next_multiple_of(of) / side);
@@ -132,9 +141,10 @@ impl Estimator {
         let Some(errors) = self.scales.errors(space, &rounding) else { return Err(too_few) };
         let range = self.range();
         let ray = Some(errors.white * errors.ray).filter(|ray| *ray > 0.0);
-        let (noise, smooth) = (white(&errors, range, space, step), errors.times(errors.smooth, space));
+        let noise = white(&errors, range, space, step);
+        let [smooth, wide] = [errors.smooth, errors.whole].map(|factor| errors.times(factor, space));
         let beside_rounding = beside_rounding(&errors, range, space, &rounding);
-        Ok(Estimate { noise, beside_rounding, smooth, step, blocks, measure, range, ray })
+        Ok(Estimate { noise, beside_rounding, smooth, wide, step, blocks, measure, range, ray })
     }
 
     /// The q that a fortieth of the blocks lie below and above.

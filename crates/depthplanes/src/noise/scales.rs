@@ -9,7 +9,7 @@ use super::{Rounding, SensorNoise, Space, steady};
 use crate::group::{reserve_to, vectorised};
 
 /// Sides of the cells, pixels.
-pub(super) const SIDES: [usize; 3] = [4, 8, 16];
+pub(super) const SIDES: [usize; 4] = [4, 8, 16, 32];
 /// Cells that are looked at for each side, at most about: a median of 4,000 is known to 2 %.
 pub(crate) const SAMPLE: usize = 4096;
 /// Fewest second differences that tell a scale.
@@ -30,6 +30,8 @@ const MEDIAN_OF_TILE: f64 = 12.34;
 const GROWTH: f64 = 2.0;
 /// Steep tiles that tell the ray, at most.
 const STEEP_ONES: usize = 512;
+/// Squared residuals of a cell without an edge, as a multiple of what they are in the mean: 1.5 deviations.
+const WITHOUT_EDGE: f64 = 2.25;
 /// A slope makes error if steep tiles scatter more than flat ones by this factor, in variance.
 const STEEP: f64 = 1.25;
 /// The ray of a pixel is known to within so many pixels, at best and at worst: no camera is calibrated to better, and what
@@ -45,6 +47,8 @@ pub(crate) struct Bend {
     pub(crate) slope: f32,
     /// The square of `(m[-1] - 2 m[0] + m[1]) / sqrt 6`: in the mean the variance of a cell's mean.
     pub(crate) square: f32,
+    /// Squared residuals of a cell's pixels about its own plane, over its degrees of freedom: the largest of the three.
+    pub(crate) residual: f32,
 }
 
 /// Cells of one side, row by row.
@@ -86,7 +90,7 @@ struct Steep {
 #[derive(Debug, Default)]
 pub(crate) struct Scales {
     /// For each of [`SIDES`].
-    pub(crate) bends: [Vec<Bend>; 3],
+    pub(crate) bends: [Vec<Bend>; SIDES.len()],
     pub(crate) tiles: Vec<Scatter>,
     numbers: Vec<f32>,
     steep: Vec<Steep>,
@@ -104,6 +108,13 @@ pub(crate) struct Errors {
     /// Standard deviation of single pixels about a tile's plane, and of means over 16 x 16, as multiples.
     pub(crate) white: f64,
     pub(crate) smooth: f64,
+    /// The larger of those of means over 16 x 16 and over 32 x 32 where no edge runs through a cell.
+    pub(crate) wide: f64,
+    /// The same with the waves that are longer than that, of which second differences see a part: so much more as it would
+    /// be at 32 times the root of 2 pixels, if it grew on as from 16 to 32.
+    pub(crate) whole: f64,
+    /// A q in the middle of those that were seen.
+    pub(crate) q: f64,
 }
 
 impl Scales {
@@ -119,9 +130,24 @@ impl Scales {
         reserve_to(&mut self.steep, STEEP_ONES);
     }
 
-    /// Looks at cells that have most of their usual pixels, as have those on either side of them.
+    /// Looks at cells of the first three of [`SIDES`], and at fours of the last of these as cells of twice the side.
     #[inline(always)]
     pub(crate) fn look_at(&mut self, cells: Cells, cell: impl Fn(usize) -> Cell) {
+        self.look_at_each(cells, &cell);
+        let Cells { level, columns: every, .. } = cells;
+        if level + 2 == SIDES.len() {
+            let (columns, rows) = (every / 2, cells.rows / 2);
+            let of_four = |at: usize| {
+                let first = 2 * (at / columns * every + at % columns);
+                Cell::of_quarters([first, first + 1, first + every, first + every + 1].map(&cell), SIDES[level] as f32)
+            };
+            self.look_at_each(Cells { level: level + 1, columns, rows, ..cells }, of_four);
+        }
+    }
+
+    /// Looks at cells that have most of their usual pixels, as have those on either side of them.
+    #[inline(always)]
+    fn look_at_each(&mut self, cells: Cells, cell: impl Fn(usize) -> Cell) {
         let Cells { level, columns, rows, usual } = cells;
         // A map without a valid pixel has no usual tile.
         let least = (WHOLE * usual * (1 << (2 * level)) as f32).max(1.0);
@@ -130,19 +156,21 @@ impl Scales {
         for row in 1..rows.saturating_sub(1) {
             for column in (1 + row * 7 % stride..columns.saturating_sub(1)).step_by(stride) {
                 let at = row * columns + column;
-                let Cell { n, abc: [a, b, q], squares } = cell(at);
+                let own = cell(at);
+                let Cell { n, abc: [a, b, q], .. } = own;
                 if n < least {
                     continue;
                 }
                 let slope = a * a + b * b;
                 if level == 0 {
-                    self.tiles.push(Scatter { q, slope, square: squares / (n - 3.0).max(1.0) });
+                    self.tiles.push(Scatter { q, slope, square: own.scatter() });
                 }
                 for step in [1, columns] {
                     let [before, behind] = [at - step, at + step].map(&cell);
                     if before.n.min(behind.n) >= least {
                         let off = before.abc[2] - 2.0 * q + behind.abc[2];
-                        self.bends[level].push(Bend { q, slope, square: off * off * (1.0 / 6.0) });
+                        let residual = own.scatter().max(before.scatter()).max(behind.scatter());
+                        self.bends[level].push(Bend { q, slope, square: off * off * (1.0 / 6.0), residual });
                     }
                 }
             }
@@ -159,11 +187,11 @@ impl Scales {
 
     #[inline(always)]
     fn errors_of(&mut self, space: Space, rounding: &Rounding) -> Option<Errors> {
-        let Scales { bends: [fine, middle, coarse], tiles, numbers, steep: memory } = self;
+        let Scales { bends: [fine, larger @ ..], tiles, numbers, steep: memory } = self;
         if fine.len() < FEW {
             return None;
         }
-        let [constant, square] = shape(fine, numbers, space);
+        let ([constant, square], q) = shape(fine, numbers, space);
         let facing = |q: f32| (constant + square * f64::from(q) * f64::from(q)).powi(2) + floor(q.into(), rounding);
         let pixels = tiles.iter().map(|tile| (f64::from(tile.square) / facing(tile.q)) as f32);
         let at_most = if tiles.len() < FEW { 16.0 } else { median(numbers, pixels) * 13.0 / MEDIAN_OF_TILE };
@@ -181,7 +209,7 @@ impl Scales {
         let ray =
             if excess > 0.0 { ray_of(steep, memory, |bend| of_flat * facing(bend.q) + shared(bend, 4.0)) } else { 0.0 };
         let level = if ray > 0.0 { of_flat.sqrt() } else { 1.0 };
-        let found = Errors { constant: constant * level, square: square * level, ray, white: 4.0, smooth: 0.25 };
+        let found = Errors { constant: constant * level, square: square * level, ray, q, ..Errors::NONE };
         let variance = |q: f32, slope: f32| found.variance(q.into(), slope.into()) + floor(q.into(), rounding);
         let pixels = tiles.iter().map(|tile| (f64::from(tile.square) / variance(tile.q, tile.slope)) as f32);
         let white = if tiles.len() < FEW { 4.0 } else { (median(numbers, pixels) * 13.0 / MEDIAN_OF_TILE).sqrt() };
@@ -195,18 +223,65 @@ impl Scales {
             });
             (median(numbers, squares) / MEDIAN_OF_SQUARE).sqrt().clamp(least, most)
         };
-        let of_middle = ratio(middle, 8.0, 0.5, GROWTH);
-        let smooth = ratio(coarse, 16.0, 0.5 * of_middle.min(0.5), GROWTH * of_middle);
+        let of_middle = ratio(&larger[0], 8.0, 0.5, GROWTH);
+        let smooth = ratio(&larger[1], 16.0, 0.5 * of_middle.min(0.5), GROWTH * of_middle);
         // What of the scatter of tiles is not white: W^2 / 16 is known to a tenth.
         let of_tiles = (1.0 - 1.1 * white * white / 16.0).max(0.0).sqrt();
         let smooth = (smooth * of_tiles).max(white / 16.0);
-        Some(Errors { white, smooth, ..found })
+        // A cell without an edge scatters about its plane by its white part and by what smaller cells showed to be smooth.
+        let (mut seen, mut before) = ([0.0f64; 2], 1.0f64);
+        for (bends, side) in larger.iter().zip(&SIDES[1..]).map(|(bends, &side)| (bends, side as f64)) {
+            numbers.clear();
+            numbers.extend(bends.iter().filter_map(|bend| {
+                let variance = variance(bend.q, bend.slope);
+                let own = (white * white + before * before) * variance + rounding.variance(bend.q.into());
+                let is_whole = f64::from(bend.residual) <= WITHOUT_EDGE * own;
+                is_whole.then_some((f64::from(bend.square) / (variance + shared(bend, side))) as f32)
+            }));
+            if numbers.len() < FEW {
+                break;
+            }
+            let squared = middle_of(numbers) / MEDIAN_OF_SQUARE;
+            // Of 8 x 8 pixels too much is white.
+            seen = [seen[1], (squared - 1.1 * (white / side).powi(2)).max(0.0).sqrt()];
+            before = before.max(squared.sqrt());
+        }
+        let [of_half, of_whole] = seen;
+        let wide = of_half.max(of_whole).max(white / 16.0);
+        let whole = wide * (of_whole / of_half).clamp(1.0, GROWTH).sqrt();
+        Some(Errors { white, smooth, wide, whole, ..found })
+    }
+}
+
+impl Cell {
+    /// Squared residuals over their degrees of freedom.
+    #[inline(always)]
+    fn scatter(&self) -> f32 {
+        self.squares / (self.n - 3.0).max(1.0)
+    }
+
+    /// The cell that four of so many pixels a side are the quarters of, row by row; each counts as much as the others.
+    #[inline(always)]
+    fn of_quarters(quarters: [Cell; 4], side: f32) -> Cell {
+        let sum = |of: fn(&Cell) -> f32| quarters.iter().map(of).sum::<f32>();
+        let [a, b, c] = [sum(|cell| cell.abc[0]), sum(|cell| cell.abc[1]), sum(|cell| cell.abc[2])].map(|sum| sum / 4.0);
+        let [q0, q1, q2, q3] = quarters.map(|cell| cell.abc[2]);
+        // Of the squares of a line's places a quarter is within its halves and the rest between them.
+        let slope = |within: f32, between: f32| 0.25 * within + 0.75 * between / (2.0 * side);
+        let (a, b) = (slope(a, q1 + q3 - q0 - q2), slope(b, q2 + q3 - q0 - q1));
+        let mut squares = 0.0;
+        for (at, quarter) in quarters.iter().enumerate() {
+            let [u, v] = [at % 2, at / 2].map(|half| side * (half as f32 - 0.5));
+            let [da, db, off] = [quarter.abc[0] - a, quarter.abc[1] - b, quarter.abc[2] - (c + a * u + b * v)];
+            squares += quarter.squares + quarter.n * (off * off + (da * da + db * db) * side * side / 12.0);
+        }
+        Cell { n: sum(|cell| cell.n), abc: [a, b, c], squares }
     }
 }
 
 impl Errors {
     /// Of a map that shows too little.
-    pub(crate) const NONE: Errors = Errors { constant: 0.0, square: 0.0, ray: 0.0, white: 4.0, smooth: 0.25 };
+    pub(crate) const NONE: Errors = Errors { constant: 0.0, square: 0.0, ray: 0.0, white: 4.0, smooth: 0.25, wide: 0.25, whole: 0.25, q: 1.0 };
 
     /// Variance of the mean over a tile.
     #[inline(always)]
@@ -242,9 +317,9 @@ fn shared(bend: &Bend, side: f64, rounding: &Rounding, scatter: f64) -> f64 {
 }
 
 /// Constant and square of the error, by its scatter in stretches of q: the ratio of both that leaves the least in the
-/// logarithm of the variance.
+/// logarithm of the variance. And a q in the middle.
 #[inline(always)]
-fn shape(bends: &mut [Bend], numbers: &mut Vec<f32>, space: Space) -> [f64; 2] {
+fn shape(bends: &mut [Bend], numbers: &mut Vec<f32>, space: Space) -> ([f64; 2], f64) {
     let size = bends.len().div_ceil(STRETCHES);
     let mut points = [(0.0, 0.0); STRETCHES];
     let (mut rest, mut count) = (bends, 0);
@@ -279,7 +354,7 @@ fn shape(bends: &mut [Bend], numbers: &mut Vec<f32>, space: Space) -> [f64; 2] {
             best = (left, [sigma * (1.0 - share), sigma * share * per_square]);
         }
     }
-    best.1
+    (best.1, middle)
 }
 
 /// The ray that explains the scatter of steep tiles beside the error of flat ones, pixels, by halving.
@@ -306,16 +381,16 @@ fn ray_of(steep: &[Bend], memory: &mut Vec<Steep>, flat: impl Fn(&Bend) -> f64) 
 /// The median of numbers.
 #[inline(always)]
 fn median(memory: &mut Vec<f32>, numbers: impl Iterator<Item = f32>) -> f64 {
-    quantile(memory, 0.5, numbers)
-}
-
-/// The number that a share of them lies below.
-#[inline(always)]
-fn quantile(memory: &mut Vec<f32>, share: f64, numbers: impl Iterator<Item = f32>) -> f64 {
     memory.clear();
     memory.extend(numbers);
-    let at = (memory.len() as f64 * share) as usize;
-    (*memory.select_nth_unstable_by(at, f32::total_cmp).1).into()
+    middle_of(memory)
+}
+
+/// The one in the middle, of one or more.
+#[inline(always)]
+fn middle_of(numbers: &mut [f32]) -> f64 {
+    let at = numbers.len() / 2;
+    (*numbers.select_nth_unstable_by(at, f32::total_cmp).1).into()
 }
 
 /// Bits of a number as a whole number in the order of [`f32::total_cmp`].

@@ -67,6 +67,7 @@ use reach::Reach;
 use seams::Seams;
 use shown::Shown;
 use switches::is_on;
+use thresholds::SHOWN_MOST;
 
 pub(super) static INFO: MethodInfo = MethodInfo {
     name: "planar",
@@ -307,7 +308,7 @@ impl Runner {
         let (rays, threads) = (&Rays::of(&job.sensor, map.width(), map.height()), job.threads);
 
         self.sum_tiles(&map, job);
-        let mut noise = self.estimate_noise(&map, job);
+        let (mut noise, wide) = self.estimate_noise(&map, job);
         job.done("tiles");
 
         self.grow(&noise, threads);
@@ -318,7 +319,7 @@ impl Runner {
         self.merge(rays, threads);
         watch(Moment::Merged, self, &noise);
         self.drop_small(threads)?;
-        if let Some(times) = self.smooth_shown(rays, job) {
+        if let Some(times) = self.smooth_shown(wide, rays, job) {
             noise = noise.with_smooth_times(times);
             self.merge_again(times, rays, threads)?;
             watch(Moment::Shown, self, &noise);
@@ -354,13 +355,17 @@ impl Runner {
         self.pyramid.sum(map, Space::of(job.sensor.measure), job.threads, &mut self.field);
     }
 
-    /// The noise to expect: stated, or as the cells show it.
-    fn estimate_noise<T: Pixel>(&mut self, map: &DepthView<'_, T>, job: &Job<'_>) -> NoiseModel {
+    /// The noise to expect: stated, or as the cells show it; and how many times its smooth part the cells show with the
+    /// longer waves.
+    fn estimate_noise<T: Pixel>(&mut self, map: &DepthView<'_, T>, job: &Job<'_>) -> (NoiseModel, f64) {
         let space = Space::of(job.sensor.measure);
         let rounding = if is_on("rounding") { self.rounding.find(map, space) } else { Rounding::NONE };
         self.scales.look(&self.pyramid);
         let errors = self.scales.errors(space, &rounding).unwrap_or(Errors::NONE);
-        self.params.expected(&job.sensor, &errors, rounding)
+        let noise = self.params.expected(&job.sensor, &errors, rounding);
+        let wide = errors.wide.max(errors.smooth) * errors.variance(errors.q, 0.0).sqrt();
+        let times = self.params.noise_scale * wide / noise.smooth_sigma(errors.q);
+        (noise, if is_on("wide") { times.min(SHOWN_MOST) } else { 0.0 })
     }
 
     /// Grow: regions of cells on one plane.
@@ -387,16 +392,15 @@ impl Runner {
         self.merger.drop_small(&mut self.pyramid.grids[0], &mut self.regions, self.params.least(), threads)
     }
 
-    /// How many times the smooth part large regions show that is expected of patches, if more than once.
-    fn smooth_shown(&mut self, rays: &Rays, job: &Job<'_>) -> Option<f64> {
+    /// How many times the smooth part that is expected of patches there is over long ways, if more than once: as cells
+    /// show it or large regions.
+    fn smooth_shown(&mut self, wide: f64, rays: &Rays, job: &Job<'_>) -> Option<f64> {
         let Runner { params, pyramid, regions, facets, shown, .. } = self;
-        if !is_on("shown") {
-            return None;
-        }
         pyramid.hand_up(job.threads);
         facets.bows.measure(pyramid, &regions.all);
-        let times = shown.times(&regions.all, &facets.bows, rays, pyramid.grids[0].len());
-        Some(params.noise_scale * times).filter(|&times| times > 1.0)
+        let by_regions = shown.times(&regions.all, &facets.bows, rays, pyramid.grids[0].len());
+        let by_regions = if is_on("shown") { params.noise_scale * by_regions } else { 0.0 };
+        Some(wide.max(by_regions)).filter(|&times| times > 1.0)
     }
 
     /// Merges regions that are one by so many times the smooth part.

@@ -178,12 +178,12 @@ impl Seen {
         self.findings.push(self.with_smooth(finding, &noise));
     }
 
-    /// The smooth part as large regions show it, and what the region has become by it.
+    /// The smooth part as large cells or regions show it, and what the region has become by it.
     fn look_at_smooth(&mut self, run: &Runner, noise: &NoiseModel) {
         if !self.q.is_finite() {
             return;
         }
-        let finding = Finding::new("grow", "the part that its neighbours share", "as large regions show it");
+        let finding = Finding::new("grow", "the part that its neighbours share", "over long ways, as large cells or regions show it");
         self.findings.push(self.with_smooth(finding, noise));
         let grid = &run.pyramid.grids[0];
         if let Some(region) = run.regions.all.get(grid.region[self.cell(grid)] as usize) {

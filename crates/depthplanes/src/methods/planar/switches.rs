@@ -4,10 +4,11 @@
 
 /// Everything that may be switched off.
 #[cfg(feature = "ablate")]
-const SWITCHES: [&str; 16] = [
+const SWITCHES: [&str; 17] = [
     "settle",
     "bowed-merge",
     "shown",
+    "wide",
     "explained",
     "bow",
     "joint",
