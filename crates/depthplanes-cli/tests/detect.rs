@@ -44,7 +44,7 @@ fn json_of_one_map_is_one_document() {
     assert_eq!(record["schema"], "depthplanes.planes/1");
     assert_eq!(record["source"], "map.pgm");
     assert_eq!(record["method"], "planar");
-    assert_eq!(record["parameters"]["confidence"], 4.0);
+    assert_eq!(record["parameters"]["inlier-threshold"], 4.0);
     assert_eq!(record["parameters"]["min"], 10);
     assert_eq!(record["valid_pixels"], 32 * 24 - 16);
     assert_eq!(record["planes"].as_array().unwrap().len(), 2);

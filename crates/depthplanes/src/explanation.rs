@@ -128,6 +128,8 @@ pub enum Verdict {
     },
     /// Part of a surface that bends.
     Curved,
+    /// Part of a surface that is seen edge-on, or of what lies between two surfaces.
+    EdgeOn,
     /// The surface is not flat around the pixel: an edge, a crease, a bend or clutter.
     Uneven {
         /// How many times as rough as noise makes a flat cell.
@@ -169,6 +171,7 @@ impl Verdict {
             Verdict::Sparse { .. } => "sparse",
             Verdict::Small { .. } => "small",
             Verdict::Curved => "curved",
+            Verdict::EdgeOn => "edge_on",
             Verdict::Uneven { .. } => "uneven",
             Verdict::Off { .. } => "off",
             Verdict::Alone => "alone",
@@ -201,6 +204,10 @@ impl fmt::Display for Verdict {
                 counted(*pixels)
             ),
             Verdict::Curved => write!(f, "No plane here: it is part of a surface that bends; see `detect --curved`."),
+            Verdict::EdgeOn => write!(
+                f,
+                "No plane here: the surface is seen edge-on, its depth doubles within 16 pixels. It may be what a sensor sees between two surfaces."
+            ),
             Verdict::Uneven { roughness } => write!(
                 f,
                 "No plane here: the surface is {roughness:.1} times as rough as noise makes a flat one. An edge, a crease or clutter, or more noise than expected."

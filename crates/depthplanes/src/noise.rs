@@ -42,6 +42,14 @@ impl Space {
         }
     }
 
+    /// q of what is infinitely far. Disparity whose offset nobody states is taken to have none.
+    pub(crate) fn at_infinity(measure: Measure) -> f64 {
+        match measure {
+            Measure::InverseDepth { slope, offset } => -offset / slope,
+            Measure::Depth { .. } | Measure::Disparity => 0.0,
+        }
+    }
+
     /// q of a map value.
     #[inline(always)]
     pub fn q(self, value: f64) -> f64 {

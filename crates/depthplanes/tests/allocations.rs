@@ -139,7 +139,7 @@ fn later_frames_allocate_nothing() {
 #[test]
 fn later_frames_of_planar_allocate_nothing() {
     for sensor in sensors() {
-        for params in [Planar::default(), Planar { min: 0, noise: 2.0, confidence: 1.0, ..Planar::default() }] {
+        for params in [Planar::default(), Planar { min: 0, noise: 2.0, inlier_threshold: 1.0, ..Planar::default() }] {
             for (size, first) in [((120, 90), 0), ((97, 33), 1), ((400, 300), 2)] {
                 check::<u8, _>(params, sensor, size, first);
                 check::<u16, _>(params, sensor, size, first);

@@ -1,5 +1,6 @@
 //! The method `planar` against the exact truth of made-up scenes.
 
+use depthplanes::explanation::Verdict;
 use depthplanes::metrics::{Contingency, evops};
 use depthplanes::noise::SensorNoise;
 use depthplanes::scene::{Random, SceneFrame, ScenePixels, Spec, Truth};
@@ -247,5 +248,26 @@ fn planes_that_are_grown_over_in_bands_are_whole() {
         assert_eq!(found.planes.len(), 2, "{threads} threads");
         let on_planes: f64 = found.planes.iter().map(|plane| plane.share_of_valid).sum();
         assert!(on_planes > 0.99, "{on_planes} of the pixels, {threads} threads");
+    }
+}
+
+#[test]
+fn a_surface_seen_edge_on_is_no_plane_and_explain_says_so() {
+    // A wall at 3 m, and beside it a surface that comes nearer by a share of its inverse depth in each column.
+    let (width, height, seam) = (80usize, 64usize, 64usize);
+    let map = |per_pixel: f64| -> Vec<f32> {
+        let q = |u: usize| 1.0 / 3.0 * (1.0 + per_pixel * u.saturating_sub(seam) as f64);
+        (0..width * height).map(|at| (1.0 / q(at % width)) as f32).collect()
+    };
+    // In the middle, 8 columns on, a change of s at the seam is one of s / (1 + 8 s) of what is there.
+    for (per_pixel, is_plane) in [(0.04, true), (1.0, false)] {
+        let map = map(per_pixel);
+        let sensor = Sensor { measure: Measure::Depth { metres: 1.0 }, ..Sensor::default() };
+        let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
+        let view = DepthView::new(&map, width, height).unwrap();
+        let label = detector.detect(view).unwrap().labels[32 * width + 72];
+        assert_eq!(label > 0, is_plane, "{per_pixel}");
+        let verdict = detector.explain(view, [72, 32]).unwrap().verdict;
+        assert_eq!(matches!(verdict, Verdict::EdgeOn), !is_plane, "{per_pixel}: {verdict:?}");
     }
 }

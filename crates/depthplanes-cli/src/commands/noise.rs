@@ -120,7 +120,9 @@ fn readable(found: &[(String, Estimate)], all: &Estimate) -> String {
     text += &format!("\nStandard deviations of {what}: of single pixels, and of what neighbours share.{steps}\n");
     text += &format!("All together: {} and {}.\n", formula(all.noise), formula(all.wide));
     text += &match flags(all) {
-        Some(flags) => format!("To use it (longer waves than 16 pixels it finds by itself): depthplanes detect {flags}\n"),
+        Some(flags) => {
+            format!("To use it (longer waves than 16 pixels it finds by itself): depthplanes detect {flags}\n")
+        }
         None => "There is no noise beside rounding, and nothing to tell `detect`.\n".to_string(),
     };
     text

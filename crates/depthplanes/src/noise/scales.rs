@@ -264,7 +264,8 @@ impl Cell {
     #[inline(always)]
     fn of_quarters(quarters: [Cell; 4], side: f32) -> Cell {
         let sum = |of: fn(&Cell) -> f32| quarters.iter().map(of).sum::<f32>();
-        let [a, b, c] = [sum(|cell| cell.abc[0]), sum(|cell| cell.abc[1]), sum(|cell| cell.abc[2])].map(|sum| sum / 4.0);
+        let [a, b, c] =
+            [sum(|cell| cell.abc[0]), sum(|cell| cell.abc[1]), sum(|cell| cell.abc[2])].map(|sum| sum / 4.0);
         let [q0, q1, q2, q3] = quarters.map(|cell| cell.abc[2]);
         // Of the squares of a line's places a quarter is within its halves and the rest between them.
         let slope = |within: f32, between: f32| 0.25 * within + 0.75 * between / (2.0 * side);
@@ -281,7 +282,8 @@ impl Cell {
 
 impl Errors {
     /// Of a map that shows too little.
-    pub(crate) const NONE: Errors = Errors { constant: 0.0, square: 0.0, ray: 0.0, white: 4.0, smooth: 0.25, wide: 0.25, whole: 0.25, q: 1.0 };
+    pub(crate) const NONE: Errors =
+        Errors { constant: 0.0, square: 0.0, ray: 0.0, white: 4.0, smooth: 0.25, wide: 0.25, whole: 0.25, q: 1.0 };
 
     /// Variance of the mean over a tile.
     #[inline(always)]

@@ -15,12 +15,12 @@ use crate::methods::{Job, Method};
 use crate::noise::{NoiseModel, Space};
 use crate::with_view;
 
-/// Factors by which the noise or the confidence may be raised for a suggestion; with more, anything is a plane.
+/// Factors by which the noise or the inlier threshold may be raised for a suggestion; with more, anything is a plane.
 const FACTORS: [f64; 6] = [1.0, 1.2, 1.5, 2.0, 3.0, 4.0];
 /// Bows of less than so many times what is taken for flat may be those of a distorted plane.
 const SLIGHT: f64 = 1.5;
-/// Largest confidence that is suggested: further off, a pixel is on something else.
-const MOST_CONFIDENCE: f64 = 12.0;
+/// Largest inlier threshold that is suggested: further off, a pixel is on something else.
+const MOST_INLIER_THRESHOLD: f64 = 12.0;
 
 pub(super) fn explain(runner: &mut Runner, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) -> Result<Explanation> {
     let (mut seen, mut out) = (Seen::new(at, job.sensor), Detection::default());
@@ -69,9 +69,10 @@ impl Seen {
         match (self.fate, nearest) {
             (Fate::Small(pixels), _) => Verdict::Small { pixels: pixels as usize, min: run.params.min, early: true },
             (Fate::Curved, _) => Verdict::Curved,
+            (Fate::EdgeOn, _) => Verdict::EdgeOn,
             (Fate::None, _) if is_on_curved => Verdict::Curved,
             (Fate::None, _) if pixels < least => Verdict::Sparse { pixels: pixels as usize, least: least as usize },
-            (_, Some(near)) if near.off <= MOST_CONFIDENCE.max(2.0 * self.most) || self.fate != Fate::None => {
+            (_, Some(near)) if near.off <= MOST_INLIER_THRESHOLD.max(2.0 * self.most) || self.fate != Fate::None => {
                 Verdict::Off { off: near.off, most: self.most, label: label_of(run, out, near.id) }
             }
             _ if roughness > 1.0 => Verdict::Uneven { roughness },
@@ -86,18 +87,18 @@ impl Seen {
 
     /// Changes worth trying, a list for each parameter.
     fn changes(&self, verdict: &Verdict, run: &Runner) -> Vec<Vec<Change>> {
-        let confidence = run.params.confidence;
+        let inlier_threshold = run.params.inlier_threshold;
         let nothing = Vec::new;
         match *verdict {
             Verdict::Small { pixels, .. } => vec![smaller_min(pixels).collect()],
             Verdict::Off { off, most, .. } => {
                 let times = off / most;
-                vec![self.confidences(times * confidence), self.noises(run, times)]
+                vec![self.inlier_thresholds(times * inlier_threshold), self.noises(run, times)]
             }
             Verdict::Uneven { .. } | Verdict::Alone | Verdict::Sparse { .. } => {
                 vec![
                     smaller_min(run.params.min as usize / 2).take(3).collect(),
-                    self.confidences(confidence),
+                    self.inlier_thresholds(inlier_threshold),
                     self.noises(run, 1.2),
                 ]
             }
@@ -113,9 +114,13 @@ impl Seen {
         }
     }
 
-    fn confidences(&self, least: f64) -> Vec<Change> {
+    fn inlier_thresholds(&self, least: f64) -> Vec<Change> {
         let values = FACTORS.map(|factor| rounded_up(1.01 * factor * least));
-        values.into_iter().filter(|&value| value <= MOST_CONFIDENCE).map(|value| vec![("confidence", value)]).collect()
+        values
+            .into_iter()
+            .filter(|&value| value <= MOST_INLIER_THRESHOLD)
+            .map(|value| vec![("inlier-threshold", value)])
+            .collect()
     }
 
     /// The noise in use so many times, as parameters.

@@ -110,8 +110,8 @@ impl Cell {
 
     /// Largest sum of its squared residuals about a plane that its pixels lie on.
     #[inline(always)]
-    pub(super) fn most_squares(&self, confidence: f64) -> f64 {
-        f64::from(limit(self.n as f32, confidence as f32)) * self.variance + JOIN.smooth * self.n * self.smooth
+    pub(super) fn most_squares(&self, inlier_threshold: f64) -> f64 {
+        f64::from(limit(self.n as f32, inlier_threshold as f32)) * self.variance + JOIN.smooth * self.n * self.smooth
     }
 
     /// Largest sum of its squared residuals about the plane of a region that a flat cell joins.
@@ -287,8 +287,8 @@ impl Place {
 /// Largest sum of squared residuals of n pixels of one plane, in variances: the mean of chi-squared is n, its
 /// standard deviation sqrt(2 n). The noise level itself is known to about a fifth.
 #[inline(always)]
-pub(super) fn limit(n: f32, confidence: f32) -> f32 {
-    1.4 * (n + confidence * (2.0 * n).sqrt())
+pub(super) fn limit(n: f32, inlier_threshold: f32) -> f32 {
+    1.4 * (n + inlier_threshold * (2.0 * n).sqrt())
 }
 
 /// What is known of the cells of some rows, to be written.

@@ -77,6 +77,12 @@ impl Region {
         self.abc[0] * (u - u0) + self.abc[1] * (v - v0) + self.abc[2] + q0
     }
 
+    /// How much q changes from one pixel to the next, as a share of what q in the middle is from that at infinite range.
+    pub(super) fn steepness(&self, at_infinity: f64) -> f64 {
+        let [u, v] = self.middle;
+        self.abc[0].hypot(self.abc[1]) / (self.at(u, v) - at_infinity).abs()
+    }
+
     /// Its squared residuals as a multiple of what the noise leaves. A wall that a camera bows lies off its plane by more
     /// than any small patch of it shows.
     #[inline(always)]
@@ -112,8 +118,8 @@ impl Region {
 
     /// Takes a cell in if its pixels lie on the plane.
     #[inline(always)]
-    fn takes(&mut self, cell: &Cell, only_flat: bool, confidence: f64) -> bool {
-        let most = if only_flat { cell.most_joining() } else { cell.most_squares(confidence) };
+    fn takes(&mut self, cell: &Cell, only_flat: bool, inlier_threshold: f64) -> bool {
+        let most = if only_flat { cell.most_joining() } else { cell.most_squares(inlier_threshold) };
         if self.sums.n < SMALL {
             return self.takes_anew(cell, most);
         }
@@ -180,7 +186,7 @@ struct Work {
 
 impl Regions {
     /// Grows regions over a pyramid, on as many threads.
-    pub(super) fn grow(&mut self, pyramid: &mut Pyramid, confidence: f64, threads: usize) {
+    pub(super) fn grow(&mut self, pyramid: &mut Pyramid, inlier_threshold: f64, threads: usize) {
         reserve_to(&mut self.all, pyramid.grids[0].len());
         self.growths.resize_with(pyramid.bands.len(), Growth::default);
         let mut regions = pyramid.grids.each_mut().map(|grid| take(&mut grid.region));
@@ -192,7 +198,7 @@ impl Regions {
         in_bands(&pyramid.bands, &mut self.growths, wholes, threads, |band, growth, regions| {
             vectorised(
                 #[inline(always)]
-                || growth.grow(pyramid, band, regions, confidence),
+                || growth.grow(pyramid, band, regions, inlier_threshold),
             );
         });
         pyramid.grids.iter_mut().zip(regions).for_each(|(grid, region)| grid.region = region);
@@ -217,7 +223,13 @@ impl Regions {
 impl Growth {
     /// Grows the regions of a band; `regions`: for each level and cell of its rows the region.
     #[inline(always)]
-    fn grow(&mut self, pyramid: &Pyramid, band: &Range<usize>, mut regions: [&mut [u32]; LEVELS], confidence: f64) {
+    fn grow(
+        &mut self,
+        pyramid: &Pyramid,
+        band: &Range<usize>,
+        mut regions: [&mut [u32]; LEVELS],
+        inlier_threshold: f64,
+    ) {
         let Growth { all, work } = self;
         reserve_to(all, regions[0].len());
         reserve_to(&mut work.seeds, regions[0].len());
@@ -229,7 +241,7 @@ impl Growth {
             if let [coarser, ..] = coarser {
                 hand_down(grid, rows.start, coarser, finer[level]);
             }
-            let mut area = Area { grid, confidence, rows, region: &mut *finer[level], all, work };
+            let mut area = Area { grid, inlier_threshold, rows, region: &mut *finer[level], all, work };
             area.open();
             area.grow_on();
             area.seed();
@@ -241,7 +253,7 @@ impl Growth {
 /// Rows of a grid over which regions grow; there is nothing beyond them.
 struct Area<'a> {
     grid: &'a Grid,
-    confidence: f64,
+    inlier_threshold: f64,
     rows: Range<usize>,
     /// For each cell of the rows its region, or [`NONE`].
     region: &'a mut [u32],
@@ -335,7 +347,7 @@ impl Area<'_> {
     /// Gives a cell to a region and to the queue, if it lies on its plane.
     #[inline(always)]
     fn take(&mut self, id: u32, place: Place, cell: &Cell) -> bool {
-        let takes = self.all[id as usize].takes(cell, is_large(self.grid), self.confidence);
+        let takes = self.all[id as usize].takes(cell, is_large(self.grid), self.inlier_threshold);
         if takes {
             self.give(place, id);
         }

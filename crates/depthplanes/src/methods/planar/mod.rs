@@ -41,7 +41,7 @@ use super::finish::{Finisher, MIN, STAGES, Wanted};
 use super::noise::{NOISE, NOISE_GROWTH, NOISE_SCALE, SMOOTH_NOISE, SMOOTH_NOISE_GROWTH, stated};
 use super::rays::Rays;
 use super::{Job, Method, MethodInfo, Param, ParamKind};
-use crate::camera::Sensor;
+use crate::camera::{Measure, Sensor};
 use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::explanation::Explanation;
@@ -67,7 +67,7 @@ use reach::Reach;
 use seams::Seams;
 use shown::Shown;
 use switches::is_on;
-use thresholds::SHOWN_MOST;
+use thresholds::{EDGE_ON, SHOWN_MOST};
 
 pub(super) static INFO: MethodInfo = MethodInfo {
     name: "planar",
@@ -109,7 +109,7 @@ const PARAMS: &[Param] = &[
         source: None,
     },
     Param {
-        name: "confidence",
+        name: "inlier-threshold",
         default: 4.0,
         min: 0.5,
         max: 100.0,
@@ -147,7 +147,7 @@ pub struct Planar {
     /// is stated.
     pub ray: f64,
     /// How far from a plane its pixels may lie, standard deviations, 0.5..=100.
-    pub confidence: f64,
+    pub inlier_threshold: f64,
 }
 
 /// What `depthplanes noise` looks at is what is looked at here.
@@ -155,8 +155,17 @@ const _: () = assert!(PADDED[0] == field::COLUMNS && PADDED[1] == field::ROWS);
 
 impl Planar {
     fn from_values(values: &[f64]) -> Self {
-        let &[min, min_area, noise, noise_growth, smooth_noise, smooth_noise_growth, noise_scale, ray, confidence] =
-            values
+        let &[
+            min,
+            min_area,
+            noise,
+            noise_growth,
+            smooth_noise,
+            smooth_noise_growth,
+            noise_scale,
+            ray,
+            inlier_threshold,
+        ] = values
         else {
             panic!("one value for each row of PARAMS");
         };
@@ -169,14 +178,24 @@ impl Planar {
             smooth_noise_growth,
             noise_scale,
             ray,
-            confidence,
+            inlier_threshold,
         }
     }
 
     fn values(&self) -> [f64; 9] {
         let &Planar { min, min_area, noise, noise_growth, .. } = self;
-        let &Planar { smooth_noise, smooth_noise_growth, noise_scale, ray, confidence, .. } = self;
-        [min.into(), min_area, noise, noise_growth, smooth_noise, smooth_noise_growth, noise_scale, ray, confidence]
+        let &Planar { smooth_noise, smooth_noise_growth, noise_scale, ray, inlier_threshold, .. } = self;
+        [
+            min.into(),
+            min_area,
+            noise,
+            noise_growth,
+            smooth_noise,
+            smooth_noise_growth,
+            noise_scale,
+            ray,
+            inlier_threshold,
+        ]
     }
 
     /// The noise to expect: each part as the parameters state it, or else as the sensor's, or else as a map shows it whose
@@ -218,7 +237,7 @@ impl Planar {
 
     /// What pixels are held against.
     fn planes<'a>(&self, regions: &'a [Region], noise: &'a NoiseModel, curved: bool) -> Planes<'a> {
-        Planes { regions, noise, confidence: self.confidence, curved }
+        Planes { regions, noise, inlier_threshold: self.inlier_threshold, curved }
     }
 }
 
@@ -293,6 +312,11 @@ enum Moment {
 /// Told of each moment of a run.
 type Watch<'a> = dyn FnMut(Moment, &Runner, &NoiseModel) + 'a;
 
+/// Whether a region is seen too much edge-on for a plane.
+fn is_edge_on(region: &Region, measure: Measure) -> bool {
+    is_on("edge-on") && region.steepness(Space::at_infinity(measure)) > EDGE_ON
+}
+
 impl Runner {
     /// The method: a line for each step, in the order of docs/planar.md.
     fn planar<T: Pixel>(
@@ -329,7 +353,7 @@ impl Runner {
         self.look_at_shapes(&noise, threads);
         self.mark_curved(Optics { noise: &noise, rays }, threads);
         watch(Moment::Judged, self, &noise);
-        self.drop_explained(threads);
+        self.drop_explained(job.sensor.measure, threads);
         job.done("judge");
 
         self.assign(&noise, false, threads);
@@ -370,9 +394,9 @@ impl Runner {
 
     /// Grow: regions of cells on one plane.
     fn grow(&mut self, noise: &NoiseModel, threads: usize) {
-        let confidence = self.params.confidence;
-        self.pyramid.expect(noise, confidence, threads);
-        self.regions.grow(&mut self.pyramid, confidence, threads);
+        let inlier_threshold = self.params.inlier_threshold;
+        self.pyramid.expect(noise, inlier_threshold, threads);
+        self.regions.grow(&mut self.pyramid, inlier_threshold, threads);
     }
 
     /// Border tiles go to the region beside them that they suit better.
@@ -434,12 +458,12 @@ impl Runner {
         facets.mark(pyramid, regions, &merger.pairs, &explainer.is_explained, optics, threads);
     }
 
-    /// Leaves out regions that are explained by larger ones.
-    fn drop_explained(&mut self, threads: usize) {
+    /// Leaves out regions that larger ones explain, and those that are seen edge-on.
+    fn drop_explained(&mut self, measure: Measure, threads: usize) {
         let Runner { pyramid, regions, merger, explainer, .. } = self;
         let mut explained = explainer.is_explained.iter();
-        let is_explained = |_: &Region| explained.next() == Some(&true);
-        merger.drop(&mut pyramid.grids[0], regions, threads, is_explained);
+        let is_none = |region: &Region| explained.next() == Some(&true) || is_edge_on(region, measure);
+        merger.drop(&mut pyramid.grids[0], regions, threads, is_none);
     }
 
     /// Assign: the region of every pixel: its plane, or its curved region; while planes are sought, all curved ones as

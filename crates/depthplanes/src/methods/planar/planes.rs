@@ -19,7 +19,7 @@ pub(super) struct Planes<'a> {
     pub(super) regions: &'a [Region],
     pub(super) noise: &'a NoiseModel,
     /// How far from a plane its pixels may lie, standard deviations.
-    pub(super) confidence: f64,
+    pub(super) inlier_threshold: f64,
     /// Whether curved regions have labels, and planes have none.
     pub(super) curved: bool,
 }
@@ -59,7 +59,7 @@ impl Planes<'_> {
     /// Square of the largest distance from a region's plane at q.
     #[inline(always)]
     pub(super) fn reach(&self, region: &Region, q: f64) -> f64 {
-        self.confidence * self.confidence * self.variance(region, q)
+        self.inlier_threshold * self.inlier_threshold * self.variance(region, q)
     }
 }
 

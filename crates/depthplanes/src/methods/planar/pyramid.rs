@@ -50,11 +50,11 @@ impl Pyramid {
     }
 
     /// Holds the cells against a noise model.
-    pub(super) fn expect(&mut self, noise: &NoiseModel, confidence: f64, threads: usize) {
+    pub(super) fn expect(&mut self, noise: &NoiseModel, inlier_threshold: f64, threads: usize) {
         let expect = |mut cells: Cells<'_>| {
             vectorised(
                 #[inline(always)]
-                || cells.expect(noise, confidence as f32),
+                || cells.expect(noise, inlier_threshold as f32),
             );
         };
         in_parts(threads, self.whole(), expect, |(), ()| ());
@@ -140,7 +140,7 @@ impl Rows for Cells<'_> {
 
 impl Cells<'_> {
     #[inline(always)]
-    fn expect(&mut self, noise: &NoiseModel, confidence: f32) {
+    fn expect(&mut self, noise: &NoiseModel, inlier_threshold: f32) {
         let ray = noise.ray() as f32;
         for level in 0..LEVELS {
             let (finer, coarser) = self.grids.split_at_mut(level);
@@ -150,7 +150,7 @@ impl Cells<'_> {
             for ((variance, &a), &b) in grid.variance.iter_mut().zip(&*grid.sums.a).zip(&*grid.sums.b) {
                 *variance += of_slope(ray, a, b);
             }
-            grid.hold_against_noise(finer.last(), confidence);
+            grid.hold_against_noise(finer.last(), inlier_threshold);
         }
     }
 }

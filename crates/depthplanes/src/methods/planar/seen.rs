@@ -8,6 +8,7 @@ use super::grid::{Grid, NONE};
 use super::grow::{Region, fewest};
 use super::near::{self, Held};
 use super::planes::BENT;
+use super::thresholds::EDGE_ON;
 use super::{Moment, Runner};
 use crate::camera::{Hessian, Measure, Sensor};
 use crate::detection::Detection;
@@ -30,6 +31,8 @@ pub(super) enum Fate {
     Curved,
     /// Its pixels lie on larger planes.
     Explained,
+    /// Seen edge-on.
+    EdgeOn,
     /// It is a plane.
     Kept,
 }
@@ -183,7 +186,11 @@ impl Seen {
         if !self.q.is_finite() {
             return;
         }
-        let finding = Finding::new("grow", "the part that its neighbours share", "over long ways, as large cells or regions show it");
+        let finding = Finding::new(
+            "grow",
+            "the part that its neighbours share",
+            "over long ways, as large cells or regions show it",
+        );
         self.findings.push(self.with_smooth(finding, noise));
         let grid = &run.pyramid.grids[0];
         if let Some(region) = run.regions.all.get(grid.region[self.cell(grid)] as usize) {
@@ -297,7 +304,17 @@ impl Seen {
             let finding = finding.with("share", share, "").limit(Limit::AtMost(most));
             self.findings.push(finding.refusing(is_explained));
         }
+        let region = &run.regions.all[id as usize];
+        let is_edge_on = super::is_edge_on(region, self.sensor.measure);
+        if is_edge_on {
+            let finding = Finding::new("judge", "is it seen edge-on?", "dropped, it runs away from the camera");
+            let finding = finding
+                .with("change over a pixel", region.steepness(Space::at_infinity(self.sensor.measure)), "")
+                .limit(Limit::AtMost(EDGE_ON));
+            self.findings.push(finding.refusing(true));
+        }
         self.fate = match (sign, is_explained) {
+            _ if is_edge_on => Fate::EdgeOn,
             (_, true) => Fate::Explained,
             (Some(_), _) => Fate::Curved,
             _ => Fate::Kept,
@@ -309,7 +326,7 @@ impl Seen {
         let [tiles, blocks, ..] = &run.pyramid.grids;
         let Held { ids, middle, factor } = near::held_against([tiles, blocks], self.at);
         let [u, v] = self.at.map(|place| place as f64);
-        self.most = factor * run.params.confidence;
+        self.most = factor * run.params.inlier_threshold;
         let label = run.image[self.at[1] * run.field.stride + self.at[0]];
         self.assigned = if label == BENT { 0 } else { label };
         let planes = run.params.planes(&run.regions.all, noise, false);

@@ -4,12 +4,13 @@
 
 /// Everything that may be switched off.
 #[cfg(feature = "ablate")]
-const SWITCHES: [&str; 17] = [
+const SWITCHES: [&str; 18] = [
     "settle",
     "bowed-merge",
     "shown",
     "wide",
     "explained",
+    "edge-on",
     "bow",
     "joint",
     "surroundings",

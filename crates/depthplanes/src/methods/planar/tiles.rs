@@ -275,13 +275,13 @@ impl GridRows<'_> {
 
     /// Roughness from each cell's own residuals, and from those of its parts.
     #[inline(always)]
-    pub(super) fn hold_against_noise(&mut self, parts: Option<&GridRows<'_>>, confidence: f32) {
+    pub(super) fn hold_against_noise(&mut self, parts: Option<&GridRows<'_>>, inlier_threshold: f32) {
         let GridRows { sums: Sums { n, squares, strain, .. }, variance, smooth, roughness, columns, .. } = self;
         let numbers = n.iter().zip(&**squares).zip(&**strain).zip(&**variance).zip(&**smooth);
         for (((((&n, &squares), &strain), &variance), &smooth), roughness) in numbers.zip(&mut **roughness) {
             let free = larger(n - 3.0, 1.0);
             let bend = if parts.is_some() { FLAT.smooth as f32 * n * smooth } else { 0.0 };
-            let own = squares * n / (free * (limit(n, confidence) * variance + bend));
+            let own = squares * n / (free * (limit(n, inlier_threshold) * variance + bend));
             let most = FLAT.variances as f32 * variance + FLAT.smooth as f32 * n / 4.0 * smooth;
             *roughness = larger(own, strain / most);
         }
