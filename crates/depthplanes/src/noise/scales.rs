@@ -10,6 +10,8 @@ use crate::group::{reserve_to, vectorised};
 
 /// Sides of the cells, pixels.
 pub(super) const SIDES: [usize; 4] = [4, 8, 16, 32];
+/// The first of them whose cells are asked whether an edge runs through them.
+const EDGES: usize = 2;
 /// Cells that are looked at for each side, at most about: a median of 4,000 is known to 2 %.
 pub(crate) const SAMPLE: usize = 4096;
 /// Fewest second differences that tell a scale.
@@ -47,7 +49,8 @@ pub(crate) struct Bend {
     pub(crate) slope: f32,
     /// The square of `(m[-1] - 2 m[0] + m[1]) / sqrt 6`: in the mean the variance of a cell's mean.
     pub(crate) square: f32,
-    /// Squared residuals of a cell's pixels about its own plane, over its degrees of freedom: the largest of the three.
+    /// Squared residuals of a cell's pixels about its own plane, over its degrees of freedom: the largest of the three; from
+    /// [`EDGES`] on.
     pub(crate) residual: f32,
 }
 
@@ -92,6 +95,8 @@ pub(crate) struct Scales {
     /// For each of [`SIDES`].
     pub(crate) bends: [Vec<Bend>; SIDES.len()],
     pub(crate) tiles: Vec<Scatter>,
+    /// Cells of the last of the sides.
+    fours: Vec<Cell>,
     numbers: Vec<f32>,
     steep: Vec<Steep>,
 }
@@ -137,11 +142,14 @@ impl Scales {
         let Cells { level, columns: every, .. } = cells;
         if level + 2 == SIDES.len() {
             let (columns, rows) = (every / 2, cells.rows / 2);
-            let of_four = |at: usize| {
+            let mut fours = std::mem::take(&mut self.fours);
+            fours.clear();
+            fours.extend((0..columns * rows).map(|at| {
                 let first = 2 * (at / columns * every + at % columns);
                 Cell::of_quarters([first, first + 1, first + every, first + every + 1].map(&cell), SIDES[level] as f32)
-            };
-            self.look_at_each(Cells { level: level + 1, columns, rows, ..cells }, of_four);
+            }));
+            self.look_at_each(Cells { level: level + 1, columns, rows, ..cells }, |at| fours[at]);
+            self.fours = fours;
         }
     }
 
@@ -169,7 +177,8 @@ impl Scales {
                     let [before, behind] = [at - step, at + step].map(&cell);
                     if before.n.min(behind.n) >= least {
                         let off = before.abc[2] - 2.0 * q + behind.abc[2];
-                        let residual = own.scatter().max(before.scatter()).max(behind.scatter());
+                        let residual =
+                            if level < EDGES { 0.0 } else { own.scatter().max(before.scatter()).max(behind.scatter()) };
                         self.bends[level].push(Bend { q, slope, square: off * off * (1.0 / 6.0), residual });
                     }
                 }
@@ -187,7 +196,7 @@ impl Scales {
 
     #[inline(always)]
     fn errors_of(&mut self, space: Space, rounding: &Rounding) -> Option<Errors> {
-        let Scales { bends: [fine, larger @ ..], tiles, numbers, steep: memory } = self;
+        let Scales { bends: [fine, larger @ ..], tiles, numbers, steep: memory, .. } = self;
         if fine.len() < FEW {
             return None;
         }
@@ -229,8 +238,8 @@ impl Scales {
         let of_tiles = (1.0 - 1.1 * white * white / 16.0).max(0.0).sqrt();
         let smooth = (smooth * of_tiles).max(white / 16.0);
         // A cell without an edge scatters about its plane by its white part and by what smaller cells showed to be smooth.
-        let (mut seen, mut before) = ([0.0f64; 2], 1.0f64);
-        for (bends, side) in larger.iter().zip(&SIDES[1..]).map(|(bends, &side)| (bends, side as f64)) {
+        let (mut seen, mut before) = ([0.0f64; 2], of_middle.max(1.0));
+        for (bends, side) in larger[EDGES - 1..].iter().zip([16.0, 32.0]) {
             numbers.clear();
             numbers.extend(bends.iter().filter_map(|bend| {
                 let variance = variance(bend.q, bend.slope);
@@ -242,12 +251,11 @@ impl Scales {
                 break;
             }
             let squared = middle_of(numbers) / MEDIAN_OF_SQUARE;
-            // Of 8 x 8 pixels too much is white.
             seen = [seen[1], (squared - 1.1 * (white / side).powi(2)).max(0.0).sqrt()];
             before = before.max(squared.sqrt());
         }
-        let [of_half, of_whole] = seen;
-        let wide = of_half.max(of_whole).max(white / 16.0);
+        let [of_half, of_whole] = seen.map(|smooth| smooth.max(white / 16.0));
+        let wide = of_half.max(of_whole);
         let whole = wide * (of_whole / of_half).clamp(1.0, GROWTH).sqrt();
         Some(Errors { white, smooth, wide, whole, ..found })
     }
@@ -263,9 +271,13 @@ impl Cell {
     /// The cell that four of so many pixels a side are the quarters of, row by row; each counts as much as the others.
     #[inline(always)]
     fn of_quarters(quarters: [Cell; 4], side: f32) -> Cell {
-        let sum = |of: fn(&Cell) -> f32| quarters.iter().map(of).sum::<f32>();
-        let [a, b, c] =
-            [sum(|cell| cell.abc[0]), sum(|cell| cell.abc[1]), sum(|cell| cell.abc[2])].map(|sum| sum / 4.0);
+        let [mut n, mut a, mut b, mut c] = [0.0; 4];
+        for quarter in &quarters {
+            n += quarter.n;
+            a += quarter.abc[0] / 4.0;
+            b += quarter.abc[1] / 4.0;
+            c += quarter.abc[2] / 4.0;
+        }
         let [q0, q1, q2, q3] = quarters.map(|cell| cell.abc[2]);
         // Of the squares of a line's places a quarter is within its halves and the rest between them.
         let slope = |within: f32, between: f32| 0.25 * within + 0.75 * between / (2.0 * side);
@@ -276,7 +288,7 @@ impl Cell {
             let [da, db, off] = [quarter.abc[0] - a, quarter.abc[1] - b, quarter.abc[2] - (c + a * u + b * v)];
             squares += quarter.squares + quarter.n * (off * off + (da * da + db * db) * side * side / 12.0);
         }
-        Cell { n: sum(|cell| cell.n), abc: [a, b, c], squares }
+        Cell { n, abc: [a, b, c], squares }
     }
 }
 

@@ -20,12 +20,15 @@ impl Scales {
         let usual = (f64::from(pixels) / f64::from(filled.max(1))) as f32;
         for (level, grid) in pyramid.grids.iter().enumerate() {
             let sums = &grid.sums;
-            let cell = |at: usize| Cell {
-                n: sums.n[at],
-                abc: [sums.a[at], sums.b[at], sums.c[at]],
-                squares: sums.squares[at],
-            };
-            self.look_at(Cells { level, columns: grid.columns, rows: grid.rows, usual }, cell);
+            self.look_at(
+                Cells { level, columns: grid.columns, rows: grid.rows, usual },
+                #[inline(always)]
+                |at: usize| Cell {
+                    n: sums.n[at],
+                    abc: [sums.a[at], sums.b[at], sums.c[at]],
+                    squares: sums.squares[at],
+                },
+            );
         }
     }
 }
