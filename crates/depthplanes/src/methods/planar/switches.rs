@@ -4,7 +4,7 @@
 
 /// Everything that may be switched off.
 #[cfg(feature = "ablate")]
-const SWITCHES: [&str; 18] = [
+const SWITCHES: [&str; 17] = [
     "settle",
     "bowed-merge",
     "shown",
@@ -13,7 +13,6 @@ const SWITCHES: [&str; 18] = [
     "edge-on",
     "bow",
     "joint",
-    "surroundings",
     "turns",
     "folds",
     "excess",

@@ -75,8 +75,6 @@ pub(super) const TURN_ERROR: f64 = 1.3;
 /// planes do.
 pub(super) const JOINT_MISS: Allowance = Allowance { variances: 0.12, smooth: 2.0 };
 pub(super) const JOINT_GAIN: Allowance = Allowance { variances: 9.0, smooth: 0.3 };
-/// The first for a small region and what is around it, as long as the quadratic leaves little ([`super::curved`]).
-pub(super) const LOOSE_MISS: Allowance = Allowance { variances: 0.4, smooth: 2.0 };
 
 /// Largest angle, degrees, at which a curved surface turns between two facets: spheres are modelled with 16 segments and
 /// more, which turn by 22.5 degrees. The smallest is [`BOWED_ANGLE`]: what turns by less is one plane.
