@@ -3,7 +3,7 @@
 use depthplanes::explanation::Verdict;
 use depthplanes::metrics::{Contingency, evops};
 use depthplanes::noise::SensorNoise;
-use depthplanes::scene::{Random, SceneFrame, ScenePixels, Spec, Truth};
+use depthplanes::scene::{Random, SceneFrame, ScenePixels, SensorModel, Spec, Truth};
 use depthplanes::{DepthView, Detection, Detector, Intrinsics, Measure, Ngaf, Planar, Sensor};
 
 fn scene(spec: &str) -> SceneFrame {
@@ -69,22 +69,26 @@ fn the_three_planes_of_a_corner_are_found_with_their_equations() {
     }
 }
 
-#[test]
-fn rooms_of_boxes_balls_and_columns_are_found_as_they_are() {
-    // Seeds that the method was not tuned on.
-    for (sensor, noise, least, most_cover) in [
-        ("clean_mm", None, 0.94, 0.035),
-        ("kinect_white", Some(SensorNoise::Depth { base: 0.0, growth: 1.425e-3 }), 0.89, 0.09),
-        ("tof_white", None, 0.89, 0.045),
-    ] {
-        let (mut f, mut covered, mut curved, seeds) = (0.0, 0, 0, 60);
-        let mut off = Vec::new();
+/// What is found of so many seeds of `random`.
+struct Rooms {
+    /// Mean of F over the rooms.
+    f: f64,
+    /// Share of the curved pixels that some plane covers.
+    covered: f64,
+    /// Degrees by which normals are off, sorted.
+    off: Vec<f64>,
+}
+
+impl Rooms {
+    /// From seeds that the method was not tuned on.
+    fn of(sensor: &str, noise: Option<SensorNoise>, seeds: u64, params: Planar) -> Self {
+        let (mut f, mut covered, mut curved, mut off) = (0.0, 0, 0, Vec::new());
         for seed in 201..=200 + seeds {
             let mut frame = scene(&format!("random:seed={seed},sensor={sensor}"));
             frame.sensor.noise = noise;
-            let found = detect(Planar::default(), &frame);
+            let found = detect(params, &frame);
             let score = evops(&pairs(&frame, &found));
-            f += score.f_score / f64::from(seeds);
+            f += score.f_score / seeds as f64;
             let truth = frame.truth.pieces(1).planes;
             off.extend(score.matched.iter().map(|pair| {
                 let metric = found.planes[usize::from(pair.prediction) - 1].metric.unwrap();
@@ -93,17 +97,52 @@ fn rooms_of_boxes_balls_and_columns_are_found_as_they_are() {
             covered += covered_of_curved(&frame.truth, &found);
             curved += frame.truth.curved_pixels();
         }
-        let cover = covered as f64 / curved as f64;
         off.sort_by(f64::total_cmp);
-        let median = off[off.len() / 2];
+        Rooms { f, covered: covered as f64 / curved as f64, off }
+    }
+
+    fn print(&self, name: &str) {
+        let (f, cover, normals, median) = (self.f, 100.0 * self.covered, self.off.len(), self.median());
         println!(
-            "{sensor}: F {f:.3}, {:.1} % of the curved pixels covered, median error of {} normals {median:.3} degrees",
-            100.0 * cover,
-            off.len()
+            "{name}: F {f:.3}, {cover:.1} % of the curved pixels covered, median error of {normals} normals {median:.3} degrees"
         );
-        assert!(median < 0.5, "{sensor}: {median} degrees");
-        assert!(f >= least, "{sensor}: F {f}");
-        assert!(cover < most_cover, "{sensor}: {cover} of the curved pixels covered");
+    }
+
+    fn median(&self) -> f64 {
+        self.off[self.off.len() / 2]
+    }
+}
+
+#[test]
+fn rooms_of_boxes_balls_and_columns_are_found_as_they_are() {
+    for (sensor, noise, least, most_cover) in [
+        ("clean_mm", None, 0.94, 0.035),
+        ("kinect_white", Some(SensorNoise::Depth { base: 0.0, growth: 1.425e-3 }), 0.89, 0.09),
+        ("tof_white", None, 0.89, 0.045),
+    ] {
+        let rooms = Rooms::of(sensor, noise, 60, Planar::default());
+        rooms.print(sensor);
+        assert!(rooms.median() < 0.5, "{sensor}: {} degrees", rooms.median());
+        assert!(rooms.f >= least, "{sensor}: F {}", rooms.f);
+        assert!(rooms.covered < most_cover, "{sensor}: {} of the curved pixels covered", rooms.covered);
+    }
+}
+
+/// The goal is 0.90 for each. With the smooth part stated as the generator has it, the second of each, it is no better: box and floor
+/// differ by less than the error, and a ball bows by less.
+#[test]
+fn rooms_with_the_errors_of_real_cameras_are_found_for_the_most_part() {
+    for (sensor, least) in [("kinect", 0.78), ("kinect2", 0.69), ("azure", 0.82), ("realsense", 0.65), ("stereo", 0.54)]
+    {
+        let rooms = Rooms::of(sensor, None, 20, Planar::default());
+        rooms.print(sensor);
+        let smooth = SensorModel::find(sensor).unwrap().error_at(2.0).smooth;
+        let stated = match scene(&format!("random:seed=1,sensor={sensor}")).sensor.measure {
+            Measure::InverseDepth { slope, .. } => Planar { smooth_noise: smooth / slope, ..Planar::default() },
+            _ => Planar { smooth_noise_growth: smooth, ..Planar::default() },
+        };
+        Rooms::of(sensor, None, 20, stated).print(&format!("{sensor}, smooth part stated"));
+        assert!(rooms.f >= least, "{sensor}: F {}", rooms.f);
     }
 }
 

@@ -72,7 +72,7 @@ fn truth(wanted: &Compare, input: &Input, frame: &Frame) -> Outcome<Option<Vec<u
             }
             image.labels
         }
-        (None, Input::Scene(spec)) => spec.parse::<Spec>()?.frame()?.truth.labels,
+        (None, Input::Scene(spec)) => spec.parse::<Spec>()?.frame()?.measured_labels(),
         (None, _) => return Ok(None),
     };
     Ok(Some(image.into_iter().map(|label| if label < wanted.truth_from { 0 } else { label }).collect()))

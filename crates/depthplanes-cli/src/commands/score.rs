@@ -67,8 +67,8 @@ fn read_truth(truth: &Truth) -> Outcome<LabelImage> {
     match truth {
         Truth::File(path) => read(path),
         Truth::Scene(spec) => {
-            let truth = spec.parse::<Spec>()?.frame()?.truth;
-            let (width, height, labels) = (truth.width, truth.height, truth.labels);
+            let frame = spec.parse::<Spec>()?.frame()?;
+            let (width, height, labels) = (frame.width, frame.height, frame.measured_labels());
             Ok(LabelImage { width, height, labels, warnings: Vec::new() })
         }
     }

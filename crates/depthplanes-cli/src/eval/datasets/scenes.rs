@@ -24,10 +24,12 @@ pub(super) fn items(spec: &str) -> Outcome<Vec<Item>> {
     seeds(spec)?.into_iter().map(item).collect()
 }
 
+/// The planes where the sensor measured something: no method finds them elsewhere.
 fn truth(spec: &str) -> Outcome<TruthOf> {
-    let truth = spec.parse::<Spec>()?.frame()?.truth;
-    let labels = LabelImage { width: truth.width, height: truth.height, labels: truth.labels, warnings: Vec::new() };
-    Ok(TruthOf { labels, from: 1, planes: truth.planes, partial: None })
+    let frame = spec.parse::<Spec>()?.frame()?;
+    let (width, height, labels) = (frame.width, frame.height, frame.measured_labels());
+    let labels = LabelImage { width, height, labels, warnings: Vec::new() };
+    Ok(TruthOf { labels, from: 1, planes: frame.truth.planes, partial: None })
 }
 
 /// Most seeds of a range.
