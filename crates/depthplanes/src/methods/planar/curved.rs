@@ -1,19 +1,22 @@
 //! Stage "curved": facets of curved surfaces are told from planes.
 //!
 //! In: regions of cells and the pairs that touch. Out: which regions are curved. Growth cuts a ball or a column
-//! into facets, each flat to within the noise. Four signs tell them ([`Sign`]). A region's own cell means bow: a
-//! quadratic explains more of them than chance would. Across a joint of two facets one quadratic runs on
-//! smoothly, while the crease of two planes leaves it far off: the best parabola through a roof misses its ridge by 3/16 of the
-//! height. And a facet turns gently into what is beside it.
+//! into facets, each flat to within the noise. Five signs tell them ([`Sign`]). A region's own cell means bow: a
+//! quadratic explains more of them than chance would. Across a joint of two facets, or through a small facet and what
+//! is around it, one quadratic runs on smoothly, while the crease of two planes leaves it far off: the best
+//! parabola through a roof misses its ridge by 3/16 of the height. And a small region continues a curved one.
 
 use super::bows::Bows;
-use super::grid::{Grid, each_run};
+use super::grid::{Grid, NONE, Place, each_run};
 use super::grow::{Region, Regions};
 use super::merge::Pair;
 use super::pyramid::Pyramid;
 use super::quadratic::{Frame, Sums};
 use super::switches::is_on;
-use super::thresholds::{BOWED_ANGLE, GENTLE, GENTLE_LARGER, GENTLE_SHARE, GENTLE_SIZE, JOINT_GAIN, JOINT_MISS, TURN};
+use super::thresholds::{
+    Allowance, BOWED_ANGLE, GENTLE, GENTLE_LARGER, GENTLE_SHARE, GENTLE_SIZE, JOINT_GAIN, JOINT_MISS, LOOSE_GAIN,
+    LOOSE_MISS, TURN,
+};
 use super::turns::Border;
 use crate::group::reserve_to;
 use crate::methods::rays::{Rays, dot};
@@ -26,9 +29,18 @@ const ENOUGH: f64 = 12.0;
 const FEW: f64 = 4.0;
 /// Standard deviations between two planes where they touch, from which on they are two surfaces.
 const STEP: f64 = 6.0;
+/// Pixels below which a region's surroundings are looked at as well: its neighbours may be too small for regions.
+const SMALL: f64 = 1000.0;
 /// Pixels from which on a region is no facet of a mesh or a ball beside others of them, unless it bows itself.
 const LARGE: f64 = 4000.0;
-
+/// Share of the squares about a plane that a quadratic may leave around a small region: half of what it leaves of
+/// a surface that turns off at a crease.
+const CREASE: f64 = 0.03;
+/// Deviations of a pixel from a small region's plane up to which a tile around it is looked at: a quadratic through a roof
+/// that rises d to each side is 0.07 d off, root mean square.
+const NEAR: f64 = 20.0;
+/// How far around, in tiles.
+const RING: usize = 1;
 /// Columns and rows of cells around a region.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CellBox {
@@ -88,6 +100,8 @@ pub(super) enum Sign {
     Bow,
     /// One quadratic runs through it and that neighbour.
     Joint(u32),
+    /// It is small, and one quadratic runs through it and what is around it.
+    Surroundings,
     /// Off its border the surface goes on and turns gently.
     Turns,
     /// It and neighbours of its size turn gently where they meet, and it bows, or it is small and the surface goes on.
@@ -142,7 +156,9 @@ impl Facets {
                 let (region, number) = (&scene.all[id], id as u32);
                 let is_small = region.sums.n < LARGE;
                 let border = Border { grid: &pyramid.grids[0], all: scene.all, rays, id: number };
-                if is_on("turns") && is_small && border.turns(&boxes[id]) {
+                if is_on("surroundings") && region.sums.n < SMALL && scene.surroundings(number).bends() {
+                    *sign = Some(Sign::Surroundings);
+                } else if is_on("turns") && is_small && border.turns(&boxes[id]) {
                     *sign = Some(Sign::Turns);
                 } else if is_on("folds")
                     && folds[id].is_gentle()
@@ -255,6 +271,31 @@ impl Scene<'_> {
         are_apart(self.all, self.noise, pair)
     }
 
+    /// Looks at a small region and the flat tiles around it that no large plane explains.
+    fn surroundings(&self, small: u32) -> Joint {
+        let plane = &self.all[small as usize];
+        let grid = &self.pyramid.grids[0];
+        let CellBox { first, last } = self.boxes[small as usize];
+        let frame = Frame::of(plane);
+        let mut sums = [Sums::default(); 2];
+        for row in first[1].saturating_sub(RING)..(last[1] + RING + 1).min(grid.rows) {
+            for column in first[0].saturating_sub(RING)..(last[0] + RING + 1).min(grid.columns) {
+                let at = row * grid.columns + column;
+                let id = grid.region[at];
+                let is_own = id == small;
+                let is_loose = || id == NONE || self.all[id as usize].sums.n < SMALL;
+                if is_own || (grid.roughness[at] <= 1.0 && is_loose()) {
+                    let cell = grid.cell(Place { row: row as u32, column: column as u32 });
+                    let off = cell.residual_about(plane.abc, plane.origin) / cell.n;
+                    if is_own || off * off <= NEAR * NEAR * cell.variance {
+                        sums[usize::from(is_own)].add_run(grid, row, column..column + 1, plane, None, &frame);
+                    }
+                }
+            }
+        }
+        Joint::of(sums)
+    }
+
     /// Looks at a region and at another, within its box and as much again on each side.
     fn joint(&self, small: u32, large: u32) -> Joint {
         let plane = &self.all[small as usize];
@@ -300,21 +341,44 @@ impl Joint {
         Joint { sums, missed }
     }
 
-    /// Whether enough is seen of both sides for a quadratic through them to mean something.
+    /// Whether a quadratic through them means something.
+    fn is_determined(&self) -> bool {
+        self.sums[1].cells >= FEW && self.sums.iter().map(|sums| sums.cells).sum::<f64>() >= ENOUGH
+    }
+
+    /// Whether enough is seen of both sides as well.
     fn has_enough(&self) -> bool {
-        self.sums.iter().all(|sums| sums.cells >= FEW) && self.sums.iter().map(|sums| sums.cells).sum::<f64>() >= ENOUGH
+        self.is_determined() && self.sums[0].cells >= FEW
+    }
+
+    /// Whether it misses neither by more.
+    fn is_close(&self, most: Allowance) -> bool {
+        (0..2).all(|which| {
+            let Sums { pixels, smooth, .. } = self.sums[which];
+            self.missed[which] <= most.of(1.0, pixels, smooth)
+        })
     }
 
     /// Whether the quadratic explains both regions, and better than their planes; if so, how many pixels of
     /// the neighbour were seen.
     fn is_smooth(&self) -> Option<f64> {
         let by_planes: f64 = self.sums.iter().map(|sums| sums.by_planes - sums.cells).sum();
+        let is_better = self.is_better(by_planes, JOINT_GAIN);
+        (self.has_enough() && is_better && self.is_close(JOINT_MISS)).then_some(self.sums[0].pixels)
+    }
+
+    /// Whether the quadratic explains so much more than what leaves such squares.
+    fn is_better(&self, squares: f64, gain: Allowance) -> bool {
         let smooth: f64 = self.sums.iter().map(|sums| sums.smooth).sum();
-        let is_better = self.missed.iter().sum::<f64>() + JOINT_GAIN.of(1.0, 1.0, smooth) <= by_planes;
-        let is_close = (0..2).all(|which| {
-            let Sums { pixels, smooth, .. } = self.sums[which];
-            self.missed[which] <= JOINT_MISS.of(1.0, pixels, smooth)
-        });
-        (self.has_enough() && is_better && is_close).then_some(self.sums[0].pixels)
+        self.missed.iter().sum::<f64>() + gain.of(1.0, 1.0, smooth) <= squares
+    }
+
+    /// Whether a small region and what is around it bend smoothly.
+    fn bends(&self) -> bool {
+        let both = self.sums[0].merge(&self.sums[1]);
+        let missed: f64 = self.missed.iter().sum();
+        let by_plane = both.left_by(&both.solve::<3>()) - both.cells;
+        let is_bent = self.is_close(JOINT_MISS) || (self.is_close(LOOSE_MISS) && missed <= CREASE * by_plane);
+        self.has_enough() && self.is_better(by_plane, LOOSE_GAIN) && is_bent
     }
 }

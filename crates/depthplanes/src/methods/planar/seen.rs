@@ -283,6 +283,7 @@ impl Seen {
                 let pixels = run.regions.all[other as usize].sums.n;
                 format!("curved: it runs on smoothly into a neighbour of {pixels} pixels, on one quadratic")
             }
+            Some(Sign::Surroundings) => "curved: one quadratic runs through it and what is around it".to_string(),
             Some(Sign::Turns) => "curved: off its border the surface goes on and turns gently".to_string(),
             Some(Sign::Folds) => "curved: it turns gently into neighbours of its size".to_string(),
         };

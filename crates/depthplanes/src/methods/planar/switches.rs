@@ -4,7 +4,7 @@
 
 /// Everything that may be switched off.
 #[cfg(feature = "ablate")]
-const SWITCHES: [&str; 17] = [
+const SWITCHES: [&str; 18] = [
     "settle",
     "bowed-merge",
     "shown",
@@ -13,6 +13,7 @@ const SWITCHES: [&str; 17] = [
     "edge-on",
     "bow",
     "joint",
+    "surroundings",
     "turns",
     "folds",
     "excess",

@@ -76,6 +76,11 @@ pub(super) const TURN_ERROR: f64 = 1.3;
 pub(super) const JOINT_MISS: Allowance = Allowance { variances: 0.12, smooth: 2.0 };
 pub(super) const JOINT_GAIN: Allowance = Allowance { variances: 9.0, smooth: 0.3 };
 
+/// Around a small region, whose error bows it as much as a ball would: what it may miss as long as it leaves little
+/// ([`super::curved`]), and what it has to explain, of the smooth part as much as a bow ([`BOW`]).
+pub(super) const LOOSE_MISS: Allowance = Allowance { variances: 0.4, smooth: 2.0 };
+pub(super) const LOOSE_GAIN: Allowance = Allowance { variances: 9.0, smooth: BOW * BOW };
+
 /// Largest angle, degrees, at which a curved surface turns between two facets: spheres are modelled with 16 segments and
 /// more, which turn by 22.5 degrees. The smallest is [`BOWED_ANGLE`]: what turns by less is one plane.
 pub(super) const GENTLE: f64 = 23.5;
