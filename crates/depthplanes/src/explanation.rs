@@ -206,7 +206,7 @@ impl fmt::Display for Verdict {
             Verdict::Curved => write!(f, "No plane here: it is part of a surface that bends; see `detect --curved`."),
             Verdict::EdgeOn => write!(
                 f,
-                "No plane here: the surface is seen edge-on, its depth doubles within 16 pixels. It may be what a sensor sees between two surfaces."
+                "No plane here: the surface is seen edge-on, its depth doubles within 4 pixels. It may be what a sensor sees between two surfaces."
             ),
             Verdict::Uneven { roughness } => write!(
                 f,

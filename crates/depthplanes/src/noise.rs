@@ -21,6 +21,9 @@ pub use table::{MAX_ROWS, NoiseTable};
 
 use crate::camera::Measure;
 
+/// Largest q that counts as measured: sums of its squares are numbers of single precision. As depth it is a femtometre.
+pub(crate) const LARGEST_Q: f32 = 1e15;
+
 /// The space where planes of a map are affine, `q = a u + b v + c`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Space {

@@ -26,6 +26,9 @@ const SCENES: [&str; 6] = [
     "room:seed=7,sensor=disparity,size=320x240",
 ];
 
+/// The methods that explain themselves.
+const EXPLAINING: [&str; 2] = ["planar", "ngaf"];
+
 /// Pixels of a scene, most of them without a plane, since those are what explanations are for.
 fn pixels(found: &Detection, random: &mut Random, count: usize) -> Vec<[usize; 2]> {
     let mut pixels = Vec::new();
@@ -47,7 +50,9 @@ fn every_suggestion_works_and_every_label_is_that_of_the_detection() {
             let frame = scene(spec);
             let mut asked_of = detector(method, &[], &frame);
             let found = asked_of.detect(frame.view()).unwrap().clone();
-            for at in pixels(&found, &mut random, 40) {
+            // One that explains nothing looks for planes all the same.
+            let count = if EXPLAINING.contains(&method.name) { 40 } else { 1 };
+            for at in pixels(&found, &mut random, count) {
                 let why = asked_of.explain(frame.view(), at).unwrap();
                 let label = found.labels[at[1] * found.width + at[0]];
                 match why.verdict {
@@ -85,7 +90,7 @@ fn every_suggestion_works_and_every_label_is_that_of_the_detection() {
             method.name
         );
         let explains = kinds.iter().any(|(kind, _)| *kind != "unexplained");
-        assert_eq!(explains, ["planar", "ngaf"].contains(&method.name), "{}", method.name);
+        assert_eq!(explains, EXPLAINING.contains(&method.name), "{}", method.name);
         assert!(!explains || suggestions > 20, "{}: {suggestions}", method.name);
     }
 }

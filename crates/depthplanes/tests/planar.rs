@@ -2,7 +2,7 @@
 
 use depthplanes::explanation::Verdict;
 use depthplanes::metrics::{Contingency, evops};
-use depthplanes::noise::SensorNoise;
+use depthplanes::noise::{Estimator, SensorNoise};
 use depthplanes::scene::{Random, SceneFrame, ScenePixels, SensorModel, Spec, Truth};
 use depthplanes::{DepthView, Detection, Detector, Intrinsics, Measure, Ngaf, Planar, Sensor};
 
@@ -292,21 +292,77 @@ fn planes_that_are_grown_over_in_bands_are_whole() {
 
 #[test]
 fn a_surface_seen_edge_on_is_no_plane_and_explain_says_so() {
-    // A wall at 3 m, and beside it a surface that comes nearer by a share of its inverse depth in each column.
-    let (width, height, seam) = (80usize, 64usize, 64usize);
+    // A wall at 8 m, and beside it a surface that comes nearer by a share of its inverse depth in each of 4 columns.
+    let (width, height, seam) = (68usize, 64usize, 64usize);
     let map = |per_pixel: f64| -> Vec<f32> {
-        let q = |u: usize| 1.0 / 3.0 * (1.0 + per_pixel * u.saturating_sub(seam) as f64);
+        let q = |u: usize| 1.0 / 8.0 * (1.0 + per_pixel * (u + 1).saturating_sub(seam) as f64);
         (0..width * height).map(|at| (1.0 / q(at % width)) as f32).collect()
     };
-    // In the middle, 8 columns on, a change of s at the seam is one of s / (1 + 8 s) of what is there.
-    for (per_pixel, is_plane) in [(0.04, true), (1.0, false)] {
+    // In the middle, 2.5 columns on, a change of s at the seam is one of s / (1 + 2.5 s) of what is there.
+    for (per_pixel, is_plane) in [(0.2, true), (2.0, false)] {
         let map = map(per_pixel);
         let sensor = Sensor { measure: Measure::Depth { metres: 1.0 }, ..Sensor::default() };
         let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
         let view = DepthView::new(&map, width, height).unwrap();
-        let label = detector.detect(view).unwrap().labels[32 * width + 72];
+        let label = detector.detect(view).unwrap().labels[32 * width + 66];
         assert_eq!(label > 0, is_plane, "{per_pixel}");
-        let verdict = detector.explain(view, [72, 32]).unwrap().verdict;
+        let verdict = detector.explain(view, [66, 32]).unwrap().verdict;
         assert_eq!(matches!(verdict, Verdict::EdgeOn), !is_plane, "{per_pixel}: {verdict:?}");
+    }
+}
+
+#[test]
+fn a_wall_behind_a_large_ball_stays_whole_without_any_noise() {
+    // A ball of 0.7 m at 2 m, before a wall at 4 m, in millimetres: each half of the map.
+    let (width, height, f) = (640usize, 480usize, 580.0);
+    let depth = |at: usize| {
+        let [x, y] = [(at % width) as f64 - 319.5, (at / width) as f64 - 239.5].map(|px| px / f);
+        let a = x * x + y * y + 1.0;
+        let root = 16.0 - 4.0 * a * (4.0 - 0.7 * 0.7);
+        if root > 0.0 { (4.0 - root.sqrt()) / (2.0 * a) } else { 4.0 }
+    };
+    let map: Vec<u16> = (0..width * height).map(|at| (1000.0 * depth(at)).round() as u16).collect();
+    let sensor = Sensor {
+        measure: Measure::Depth { metres: 0.001 },
+        intrinsics: Some(Intrinsics::new(f, f, 319.5, 239.5).unwrap()),
+        ..Sensor::default()
+    };
+    let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
+    let found = detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap();
+    let wall = map.iter().filter(|&&value| value == 4000).count();
+    let kept = map.iter().zip(&found.labels).filter(|(value, label)| **value == 4000 && **label == found.labels[0]);
+    assert!(found.labels[0] > 0 && kept.count() > wall * 99 / 100);
+}
+
+#[test]
+fn the_floor_below_a_low_camera_is_a_plane_however_coarse_the_picture() {
+    for (width, height, f, near) in [(80usize, 60usize, 72.5, 0.1), (320, 240, 290.0, 0.5), (640, 480, 580.0, 1.0)] {
+        let depth = |at: usize| {
+            let y = ((at / width) as f64 - (height as f64 - 1.0) / 2.0) / f;
+            let z = 0.05 / y;
+            if y > 0.0 && (near..8.0).contains(&z) { z as f32 } else { 0.0 }
+        };
+        let map: Vec<f32> = (0..width * height).map(depth).collect();
+        let sensor = Sensor { measure: Measure::Depth { metres: 1.0 }, ..Sensor::default() };
+        let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
+        let found = detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap();
+        assert_eq!(found.planes.len(), 1, "{width} x {height}");
+        assert!(found.labelled_share() > 0.95, "{width} x {height}: {}", found.labelled_share());
+    }
+}
+
+#[test]
+fn values_too_small_for_a_depth_count_as_not_measured() {
+    let (width, height, mut random) = (320usize, 240usize, Random::new(5));
+    for share in [0.001, 0.01, 1.0] {
+        let pixel = |at: usize| if random.uniform() < share { 1.2e-38 } else { 2.0 + 0.001 * (at % width) as f32 };
+        let map: Vec<f32> = (0..width * height).map(pixel).collect();
+        let view = DepthView::new(&map, width, height).unwrap();
+        let mut detector = Detector::new(Planar::default()).unwrap();
+        assert_eq!(detector.detect(view).unwrap().planes.len(), usize::from(share < 1.0), "{share}");
+        detector.explain(view, [100, 100]).unwrap();
+        let mut estimator = Estimator::default();
+        estimator.add(view, Measure::Depth { metres: 1.0 }).unwrap();
+        assert_eq!(estimator.estimate().is_ok(), share < 1.0);
     }
 }

@@ -7,7 +7,7 @@
 use super::rounding::{Rounding, RoundingFinder};
 use super::scales::{Cell, Cells, Errors, FEW, SIDES, Scales};
 use super::steps::Steps;
-use super::{NoiseModel, SensorNoise, Space};
+use super::{LARGEST_Q, NoiseModel, SensorNoise, Space};
 use crate::camera::{Measure, Sensor};
 use crate::error::{Error, Result};
 use crate::fit::Moments;
@@ -238,4 +238,5 @@ fn pixels<T: Pixel>(map: &DepthView<'_, T>, space: Space, [u, v]: [usize; 2]) ->
     rows.flat_map(move |row| columns.clone().map(move |column| (column, row, map.row(row)[column])))
         .filter(move |(.., value)| validity.holds(*value))
         .map(move |(column, row, value)| [(column - u) as f64, (row - v) as f64, space.q(value.into())])
+        .filter(|[.., q]| q.abs() <= LARGEST_Q.into())
 }

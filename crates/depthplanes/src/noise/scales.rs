@@ -256,7 +256,7 @@ impl Scales {
         }
         let [of_half, of_whole] = seen.map(|smooth| smooth.max(white / 16.0));
         let wide = of_half.max(of_whole);
-        let whole = wide * (of_whole / of_half).clamp(1.0, GROWTH).sqrt();
+        let whole = wide * (of_whole / of_half.max(f64::MIN_POSITIVE)).clamp(1.0, GROWTH).sqrt();
         Some(Errors { white, smooth, wide, whole, ..found })
     }
 }

@@ -6,14 +6,14 @@
 use super::pyramid::LEVELS;
 use super::tiles::{LANES, SIDE};
 use crate::map::{DepthView, Pixel, Validity};
-use crate::noise::Space;
+use crate::noise::{LARGEST_Q, Space};
 
 /// Columns of the coarsest cells that are summed at a time.
 pub(super) const COLUMNS: usize = LANES * ROWS;
 /// Rows of the coarsest cells.
 pub(super) const ROWS: usize = SIDE << (LEVELS - 1);
 
-/// A map in q; NaN where nothing was measured and beyond the map's edge.
+/// A map in q; NaN where nothing was measured, where q is more than [`LARGEST_Q`], and beyond the map's edge.
 #[derive(Debug, Default)]
 pub(super) struct Field {
     pub(super) width: usize,
@@ -56,7 +56,7 @@ fn fill_with<T: Pixel>(row: &[T], q: &mut [f32], validity: Validity<T>, of: impl
     let mut valid = 0u32;
     for (q, &value) in q.iter_mut().zip(row) {
         let of_value = of(value.to_f32());
-        let holds = validity.holds(value) & of_value.is_finite();
+        let holds = validity.holds(value) & (of_value.abs() <= LARGEST_Q);
         *q = if holds { of_value } else { f32::NAN };
         valid += u32::from(holds);
     }

@@ -47,6 +47,8 @@ fn slot([a, b]: [u32; 2]) -> usize {
 
 /// Slots of the table of pairs that were just met; a power of two.
 const RECENT: usize = 1024;
+/// Pairs that are weighed sooner than a second thread wakes up.
+const FEW_PAIRS: usize = 512;
 /// Rows of tiles that are looked through at a time.
 const ROWS: usize = 64;
 
@@ -298,6 +300,7 @@ fn weigh(pairs: &mut [Pair], all: &[Region], rays: &Rays, threads: usize) {
             || weigh(pairs),
         )
     };
+    let threads = if pairs.len() < FEW_PAIRS { 1 } else { threads };
     in_parts(threads, pairs, weigh, |(), ()| ());
 }
 

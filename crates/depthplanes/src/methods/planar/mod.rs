@@ -388,8 +388,12 @@ impl Runner {
         let errors = self.scales.errors(space, &rounding).unwrap_or(Errors::NONE);
         let noise = self.params.expected(&job.sensor, &errors, rounding);
         let wide = errors.wide.max(errors.smooth) * errors.variance(errors.q, 0.0).sqrt();
-        let times = self.params.noise_scale * wide / noise.smooth_sigma(errors.q);
-        (noise, if is_on("wide") { times.min(SHOWN_MOST) } else { 0.0 })
+        // A map without any error has none over long ways either.
+        let times = match noise.smooth_sigma(errors.q) {
+            sigma if sigma > 0.0 && is_on("wide") => (self.params.noise_scale * wide / sigma).min(SHOWN_MOST),
+            _ => 0.0,
+        };
+        (noise, times)
     }
 
     /// Grow: regions of cells on one plane.
