@@ -144,7 +144,7 @@ fn advice(suggestion: &Suggestion) -> String {
     let flags: Vec<String> = flags.collect();
     let Suggestion { plane_pixels, planes_before, planes_after, .. } = suggestion;
     format!(
-        "Try {}: the pixel is then on a plane of {plane_pixels} pixels ({planes_after} planes in the map, now {planes_before}).\n",
+        "Try {}: the pixel is then on a plane of {plane_pixels} pixels ({planes_after} planes in the map instead of {planes_before}).\n",
         flags.join(" ")
     )
 }

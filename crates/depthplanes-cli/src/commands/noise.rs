@@ -121,7 +121,9 @@ fn readable(found: &[(String, Estimate)], all: &Estimate) -> String {
     text += &format!("All together: {} and {}.\n", formula(all.noise), formula(all.wide));
     text += &match flags(all) {
         Some(flags) => {
-            format!("To use it (longer waves than 16 pixels it finds by itself): depthplanes detect {flags}\n")
+            format!(
+                "To use it: depthplanes detect {flags}\nOf the smooth part the flags state what 16 pixels share; longer waves `detect` finds by itself.\n"
+            )
         }
         None => "There is no noise beside rounding, and nothing to tell `detect`.\n".to_string(),
     };

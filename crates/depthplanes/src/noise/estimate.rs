@@ -184,7 +184,8 @@ fn beside_rounding(errors: &Errors, [low, high]: [f64; 2], space: Space, roundin
 }
 
 impl NoiseModel {
-    /// Of one map: the sensor's noise as stated, or else the white part as the map shows it; none where it shows nothing.
+    /// Of one map, for methods that hold single pixels against planes: the sensor's noise as stated, or else both parts of
+    /// it as the map shows them, since a pixel is off by both; none where it shows nothing.
     pub(crate) fn of_map<T: Pixel>(map: &DepthView<'_, T>, sensor: &Sensor) -> Self {
         let (measure, space) = (sensor.measure, Space::of(sensor.measure));
         let mut estimator = Estimator::default();
@@ -193,7 +194,7 @@ impl NoiseModel {
         let estimated = || {
             let rounding = estimator.rounding.unwrap_or(Rounding::NONE);
             let errors = estimator.scales.errors(space, &rounding).unwrap_or(Errors::NONE);
-            Some(NoiseModel::new(measure, errors.times(errors.white, space), step)?.of_scatter())
+            Some(NoiseModel::new(measure, errors.times(errors.white.hypot(errors.whole), space), step)?.of_scatter())
         };
         stated.or_else(estimated).expect("an estimate is of the map's own kind")
     }

@@ -34,6 +34,9 @@ const GROWTH: f64 = 2.0;
 const STEEP_ONES: usize = 512;
 /// Squared residuals of a cell without an edge, as a multiple of what they are in the mean: 1.5 deviations.
 const WITHOUT_EDGE: f64 = 2.25;
+/// One cell in so many has to be without an edge for planes to be held against what these show: where fewer are, the map is
+/// clutter, and theirs is chance.
+const WHOLE_CELLS: usize = 3;
 /// A slope makes error if steep tiles scatter more than flat ones by this factor, in variance.
 const STEEP: f64 = 1.25;
 /// The ray of a pixel is known to within so many pixels, at best and at worst: no camera is calibrated to better, and what
@@ -113,9 +116,9 @@ pub(crate) struct Errors {
     /// Standard deviation of single pixels about a tile's plane, and of means over 16 x 16, as multiples.
     pub(crate) white: f64,
     pub(crate) smooth: f64,
-    /// The larger of those of means over 16 x 16 and over 32 x 32 where no edge runs through a cell.
+    /// The larger of those of means over 16 x 16 and over 32 x 32 where no edge runs through a cell, if many are without.
     pub(crate) wide: f64,
-    /// The same with the waves that are longer than that, of which second differences see a part: so much more as it would
+    /// That of all cells without an edge, be they few, with the waves that are longer than these, of which second differences see a part: so much more as it would
     /// be at 32 times the root of 2 pixels, if it grew on as from 16 to 32.
     pub(crate) whole: f64,
     /// A q in the middle of those that were seen.
@@ -238,7 +241,7 @@ impl Scales {
         let of_tiles = (1.0 - 1.1 * white * white / 16.0).max(0.0).sqrt();
         let smooth = (smooth * of_tiles).max(white / 16.0);
         // A cell without an edge scatters about its plane by its white part and by what smaller cells showed to be smooth.
-        let (mut seen, mut before) = ([0.0f64; 2], of_middle.max(1.0));
+        let (mut seen, mut wide, mut before) = ([0.0f64; 2], 0.0f64, of_middle.max(1.0));
         for (bends, side) in larger[EDGES - 1..].iter().zip([16.0, 32.0]) {
             numbers.clear();
             numbers.extend(bends.iter().filter_map(|bend| {
@@ -252,12 +255,14 @@ impl Scales {
             }
             let squared = middle_of(numbers) / MEDIAN_OF_SQUARE;
             seen = [seen[1], (squared - 1.1 * (white / side).powi(2)).max(0.0).sqrt()];
+            if numbers.len() >= bends.len() / WHOLE_CELLS {
+                wide = wide.max(seen[1]);
+            }
             before = before.max(squared.sqrt());
         }
         let [of_half, of_whole] = seen.map(|smooth| smooth.max(white / 16.0));
-        let wide = of_half.max(of_whole);
-        let whole = wide * (of_whole / of_half.max(f64::MIN_POSITIVE)).clamp(1.0, GROWTH).sqrt();
-        Some(Errors { white, smooth, wide, whole, ..found })
+        let whole = of_half.max(of_whole) * (of_whole / of_half.max(f64::MIN_POSITIVE)).clamp(1.0, GROWTH).sqrt();
+        Some(Errors { white, smooth, wide: wide.max(white / 16.0), whole, ..found })
     }
 }
 

@@ -6,7 +6,7 @@
 use super::grid::{Grid, NONE};
 use super::grow::{Region, Regions};
 use super::switches::is_on;
-use super::thresholds::{BOWED_ANGLE, BOWED_MERGE, BOWED_STEP, MERGE, STEP_NOISE};
+use super::thresholds::{BOWED_ANGLE, BOWED_EXCESS, BOWED_MERGE, BOWED_STEP, MERGE, STEP_NOISE};
 use crate::error::{Error, Result};
 use crate::fit::Moments;
 use crate::group::{reserve_to, vectorised};
@@ -289,7 +289,7 @@ fn weigh(pairs: &mut [Pair], all: &[Region], rays: &Rays, threads: usize) {
         for pair in pairs {
             let [a, b] = pair.ids.map(|id| &all[id as usize]);
             let cost = bend(a, b);
-            let bowed = BOWED_MERGE * a.excess().max(b.excess()).max(1.0);
+            let bowed = BOWED_MERGE * a.excess().max(b.excess()).clamp(1.0, BOWED_EXCESS);
             let is_one = cost <= 1.0 || (cost <= bowed && is_on("bowed-merge") && goes_on(a, b, pair.middle(), rays));
             pair.cost = if is_one { cost } else { f64::INFINITY };
         }

@@ -37,6 +37,8 @@ pub(super) const MERGE: Allowance = Allowance { variances: 0.5, smooth: 6.0 };
 /// statistic of a small patch sees it. Recorded frames are the same from 16 to 24; beyond, made-up walls run into columns of
 /// a large radius.
 pub(super) const BOWED_MERGE: f64 = 16.0;
+/// Most times that what either shows by itself counts: a region that bows by more was merged of two.
+pub(super) const BOWED_EXCESS: f64 = 4.0;
 /// Largest angle at which they meet, degrees; what turns by more is an edge or a bend. Of 580 surfaces (recorded frames,
 /// mirrored, turned and cropped) 90.7 % are whole at 6, and between 8 and 12 the figures are the same within a point, while a
 /// made-up wall takes a cushion in at 10, and bends by it. Made-up ramps begin at a few degrees.
