@@ -122,7 +122,7 @@ fn readable(found: &[(String, Estimate)], all: &Estimate) -> String {
     text += &match flags(all) {
         Some(flags) => {
             format!(
-                "To use it: depthplanes detect {flags}\nOf the smooth part the flags state what 16 pixels share; longer waves `detect` finds by itself.\n"
+                "Flags state the smooth part as all means over 16 pixels show it, with the scene's edges, which is what `detect` grows planes by; longer waves it finds by itself.\nTo use it: depthplanes detect {flags}\n"
             )
         }
         None => "There is no noise beside rounding, and nothing to tell `detect`.\n".to_string(),
