@@ -52,6 +52,31 @@ impl Detection {
         self.planes.iter().map(|plane| plane.pixel_count).sum()
     }
 
+    /// The plane with that label; `None` for 0 and for a label that there is not.
+    pub fn plane(&self, label: u16) -> Option<&Plane> {
+        self.planes.get(usize::from(label).checked_sub(1)?)
+    }
+
+    /// (u, v) of the pixels of the plane with that label, row by row; none for a label that there is not.
+    ///
+    /// ```
+    /// use depthplanes::{DepthView, Detector};
+    /// let depth_mm: Vec<u16> = (0..40 * 16).map(|at| if at % 40 < 20 { 1000 } else { 2000 }).collect();
+    /// let mut detector = Detector::default();
+    /// let found = detector.detect(DepthView::new(&depth_mm, 40, 16)?)?;
+    /// assert_eq!(found.pixels_of(2).next(), Some([20, 0]));
+    /// assert_eq!(found.pixels_of(2).count(), found.planes[1].pixel_count);
+    /// # Ok::<(), depthplanes::Error>(())
+    /// ```
+    pub fn pixels_of(&self, label: u16) -> impl Iterator<Item = [usize; 2]> + '_ {
+        let bounds = self.plane(label).map(|plane| plane.bounding_box);
+        bounds.into_iter().flat_map(move |PixelBox { u_min, v_min, u_max, v_max }| {
+            let (columns, rows) = (u_min as usize..=u_max as usize, v_min as usize..=v_max as usize);
+            let places = rows.flat_map(move |v| columns.clone().map(move |u| [u, v]));
+            places.filter(move |&[u, v]| self.labels[v * self.width + u] == label)
+        })
+    }
+
     /// The parts of the plane with that label; none unless it was joined of several.
     pub fn parts_of(&self, label: u16) -> &[Part] {
         let end = |label: u16| self.parts.partition_point(|part| part.of <= label);
@@ -88,6 +113,19 @@ pub struct Plane {
     /// The plane in camera coordinates; `None` without intrinsics and a metric measure, or without
     /// a fit.
     pub metric: Option<MetricPlane>,
+}
+
+impl Plane {
+    /// Unit normal towards the camera, camera coordinates (x right, y down, z forward); `None` unless unit and camera are
+    /// known.
+    pub fn normal(&self) -> Option<[f64; 3]> {
+        Some(self.metric?.plane.normal)
+    }
+
+    /// Distance of the camera from the plane, metres; `None` unless unit and camera are known.
+    pub fn distance_m(&self) -> Option<f64> {
+        Some(self.metric?.plane.distance)
+    }
 }
 
 /// One of several planes that were joined into one.

@@ -1,10 +1,42 @@
 //! Finds planes in depth and disparity maps, in real time, on ordinary hardware.
 //!
-//! The flow, read left to right:
-//! `DepthView -> enhance -> group -> select -> fit -> Detection`.
+//! Your own pixels and your own camera:
 //!
-//! [`Detector`] runs a whole method over frame after frame; the stages stand alone as well.
-//! [`outline`] makes polygons of what was found. [`metrics`] holds label images against the truth.
+//! ```
+//! use depthplanes::{DepthView, Detector, Intrinsics, Measure, Sensor};
+//! // A wall 2 m away, 16-bit millimetres, row by row; 0 is missing.
+//! let (width, height) = (64, 48);
+//! let depth_mm = vec![2000u16; width * height];
+//! let sensor = Sensor {
+//!     measure: Measure::depth(0.001)?, // metres in a unit of the map
+//!     intrinsics: Some(Intrinsics::new(58.0, 58.0, 31.5, 23.5)?), // fx, fy, cx, cy, pixels
+//!     ..Sensor::default()
+//! };
+//! let mut detector = Detector::default().sensor(sensor); // keep it: later frames allocate nothing
+//! let found = detector.detect(DepthView::new(&depth_mm, width, height)?)?;
+//! let wall = &found.planes[0]; // the largest first
+//! assert_eq!((wall.label, wall.pixel_count), (1, width * height));
+//! assert!((wall.distance_m().unwrap() - 2.0).abs() < 1e-6);
+//! assert!((wall.normal().unwrap()[2] + 1.0).abs() < 1e-9); // towards the camera
+//! assert_eq!(found.labels[0], 1); // one label a pixel, 0 for none
+//! # Ok::<(), depthplanes::Error>(())
+//! ```
+//!
+//! | to | look at |
+//! |---|---|
+//! | find planes in frame after frame, with parameters, on threads | [`Detector`], [`Planar`], [`Ngaf`] |
+//! | hand over pixels with a stride, holes, several types | [`DepthView`], [`AnyView`] |
+//! | say what the numbers mean, which camera, how noisy | [`Sensor`], [`Measure`], [`Intrinsics`], [`noise`] |
+//! | read the answer | [`Detection`], [`Plane`], [`detection::MetricPlane`] |
+//! | make polygons, hulls, rectangles of it | [`outline::Outliner`] |
+//! | join the pieces of one plane | [`Detector::merge_coplanar`] |
+//! | ask why a pixel has no plane | [`Detector::explain`] |
+//! | hold an answer against a truth | [`metrics`] |
+//! | make frames whose truth is known | [`scene`] |
+//! | run the comparators, list all parameters | [`methods`] |
+//!
+//! `examples/` has programs to copy from: `own_pixels`, `camera_loop`, `floor_height`. Files are read and written by the crate
+//! `depthplanes-io`. Feature `parallel` (on by default): large maps on rayon's threads; the answer is the same for any number.
 
 pub mod camera;
 pub mod coplanar;
