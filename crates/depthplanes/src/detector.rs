@@ -50,6 +50,18 @@ pub struct Detector {
     detection: Detection,
 }
 
+impl std::fmt::Debug for Detector {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Detector")
+            .field("method", &self.method.info().name)
+            .field("sensor", &self.sensor)
+            .field("threads", &self.threads)
+            .field("curved", &self.curved)
+            .field("planes", &self.detection.planes.len())
+            .finish_non_exhaustive()
+    }
+}
+
 impl Default for Detector {
     /// A detector of the first of [`crate::methods::METHODS`] with its defaults, one thread, camera unknown.
     fn default() -> Self {
@@ -83,6 +95,7 @@ impl Detector {
     }
 
     /// States what the map's numbers mean and which camera saw them; needed for metric planes.
+    #[must_use]
     pub fn sensor(mut self, sensor: Sensor) -> Self {
         self.sensor = sensor;
         self
@@ -90,6 +103,7 @@ impl Detector {
 
     /// Threads for large maps, 1 and up (0 counts as 1). The answer is the same for any number.
     /// They are those of rayon's pool, where the whole of a frame is then worked on.
+    #[must_use]
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = threads.max(1);
         self
@@ -97,6 +111,7 @@ impl Detector {
 
     /// Whether to report surfaces that bend as well ([`Detection::curved`]), which costs time. `planar` tells them from
     /// planes, `ngaf` does not.
+    #[must_use]
     pub fn curved(mut self, yes: bool) -> Self {
         self.curved = yes;
         self

@@ -205,6 +205,7 @@ impl<'a, T: Pixel> DepthView<'a, T> {
     }
 
     /// States a value that means "missing", beside 0, NaN and the infinities (2047 for raw Kinect v1).
+    #[must_use]
     pub fn missing_value(mut self, sentinel: T) -> Self {
         self.validity.sentinel = sentinel;
         self

@@ -21,3 +21,12 @@ fn a_camera_loop_gives_polygons_in_metres() {
 fn the_camera_is_as_high_above_the_floor_as_the_room_has_it() {
     floor_height::main().unwrap();
 }
+
+#[test]
+fn a_detector_says_what_it_is() {
+    let text = format!("{:?}", depthplanes::Detector::default().threads(2));
+    assert!(
+        text.starts_with("Detector { method: \"planar\", sensor: Sensor {") && text.contains("threads: 2"),
+        "{text}"
+    );
+}
