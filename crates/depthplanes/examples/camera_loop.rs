@@ -3,7 +3,7 @@
 use depthplanes::outline::Outliner;
 use depthplanes::scene::Spec;
 use depthplanes::{Detector, Intrinsics};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 pub(crate) fn main() -> depthplanes::Result<()> {
     let mut detector: Option<Detector> = None;
@@ -14,12 +14,16 @@ pub(crate) fn main() -> depthplanes::Result<()> {
         let camera: Intrinsics = frame.sensor.intrinsics.expect("a made-up camera is known");
         let detector = detector.get_or_insert_with(|| Detector::default().sensor(frame.sensor).threads(2));
 
-        let (start, mut stages) = (Instant::now(), Vec::new());
-        let found = detector.detect_observed(frame.view(), &mut |stage| stages.push((stage, start.elapsed())))?;
+        let (start, mut before, mut stages) = (Instant::now(), Duration::ZERO, Vec::new());
+        let found = detector.detect_observed(frame.view(), &mut |stage| {
+            let now = start.elapsed();
+            stages.push((now - before, stage));
+            before = now;
+        })?;
         let outlines = outliner.outline(found, Some(&camera))?;
 
-        let slowest = stages.windows(2).max_by_key(|pair| pair[1].1 - pair[0].1).map_or("-", |pair| pair[1].0);
-        println!("frame {number}: {} planes in {:.1?}, slowest stage {slowest}", found.planes.len(), start.elapsed());
+        let (time, slowest) = stages.iter().max().expect("a method has stages");
+        println!("frame {number}: {} planes, {time:.1?} of {before:.1?} in stage {slowest}", found.planes.len());
         for outline in outlines.iter().take(3) {
             let polygon = outline.polygons().next().expect("a plane has an outer ring");
             let corners: Vec<[f64; 3]> = polygon.outer().points_m().into_iter().flatten().collect();

@@ -5,7 +5,7 @@
 //! part of the map, not of the sensor.
 
 use super::rounding::{Rounding, RoundingFinder};
-use super::scales::{Cell, Cells, Errors, FEW, SIDES, Scales};
+use super::scales::{Cell, Cells, Errors, FEW, SIDES, SUMMED, Scales};
 use super::steps::Steps;
 use super::{LARGEST_Q, NoiseModel, SensorNoise, Space};
 use crate::camera::{Measure, Sensor};
@@ -30,7 +30,7 @@ pub struct Estimate {
     /// has to be told: the longer waves it finds by itself.
     pub smooth: SensorNoise,
     /// The smooth part as means over up to 32 x 32 pixels show it where no edge runs through them: with the longer waves of
-    /// it. `smooth` or more.
+    /// it, and without the scene's edges, which `smooth` holds.
     pub wide: SensorNoise,
     /// The steps that the values come in, map units, the finest of all frames; 0 for values that are not rounded.
     pub step: f64,
@@ -65,8 +65,8 @@ impl Estimate {
 
 /// Estimates a sensor's noise from one frame or from several together.
 ///
-/// It compares means over neighbouring blocks of 4 x 4, 8 x 8 and 16 x 16 pixels. Errors that are smooth over far more
-/// than 16 pixels, such as a bow over a whole wall, are not noise to it; texture and clutter are, where they cover more
+/// It compares means over neighbouring blocks of 4 x 4 to 32 x 32 pixels. Errors that are smooth over far more
+/// than 32 pixels, such as a bow over a whole wall, are not noise to it; texture and clutter are, where they cover more
 /// than half of the map.
 ///
 /// ```
@@ -110,7 +110,7 @@ impl Estimator {
     /// Looks at a frame's cells; gives its steps.
     fn look<T: Pixel>(&mut self, map: &DepthView<'_, T>, space: Space) -> f64 {
         let mut usual = 0.0;
-        for (level, &side) in SIDES[..3].iter().enumerate() {
+        for (level, &side) in SIDES[..SUMMED].iter().enumerate() {
             // As many as `planar` has, and so the same ones are looked at.
             let [columns, rows] = [(map.width(), PADDED[0]), (map.height(), PADDED[1])]
                 .map(|(length, of)| length.next_multiple_of(of) / side);

@@ -10,6 +10,8 @@ use crate::group::{reserve_to, vectorised};
 
 /// Sides of the cells, pixels.
 pub(super) const SIDES: [usize; 4] = [4, 8, 16, 32];
+/// So many of them are summed over pixels; a cell of the last is put together of four.
+pub(super) const SUMMED: usize = SIDES.len() - 1;
 /// The first of them whose cells are asked whether an edge runs through them.
 const EDGES: usize = 2;
 /// Cells that are looked at for each side, at most about: a median of 4,000 is known to 2 %.
@@ -138,12 +140,12 @@ impl Scales {
         reserve_to(&mut self.steep, STEEP_ONES);
     }
 
-    /// Looks at cells of the first three of [`SIDES`], and at fours of the last of these as cells of twice the side.
+    /// Looks at cells of the first [`SUMMED`] of [`SIDES`], and at fours of the last of these as cells of twice the side.
     #[inline(always)]
     pub(crate) fn look_at(&mut self, cells: Cells, cell: impl Fn(usize) -> Cell) {
         self.look_at_each(cells, &cell);
         let Cells { level, columns: every, .. } = cells;
-        if level + 2 == SIDES.len() {
+        if level + 1 == SUMMED {
             let (columns, rows) = (every / 2, cells.rows / 2);
             let mut fours = std::mem::take(&mut self.fours);
             fours.clear();
@@ -240,30 +242,53 @@ impl Scales {
         // What of the scatter of tiles is not white: W^2 / 16 is known to a tenth.
         let of_tiles = (1.0 - 1.1 * white * white / 16.0).max(0.0).sqrt();
         let smooth = (smooth * of_tiles).max(white / 16.0);
-        // A cell without an edge scatters about its plane by its white part and by what smaller cells showed to be smooth.
-        let (mut seen, mut wide, mut before) = ([0.0f64; 2], 0.0f64, of_middle.max(1.0));
-        for (bends, side) in larger[EDGES - 1..].iter().zip([16.0, 32.0]) {
-            numbers.clear();
-            numbers.extend(bends.iter().filter_map(|bend| {
-                let variance = variance(bend.q, bend.slope);
-                let own = (white * white + before * before) * variance + rounding.variance(bend.q.into());
-                let is_whole = f64::from(bend.residual) <= WITHOUT_EDGE * own;
-                is_whole.then_some((f64::from(bend.square) / (variance + shared(bend, side))) as f32)
-            }));
-            if numbers.len() < FEW {
-                break;
-            }
-            let squared = middle_of(numbers) / MEDIAN_OF_SQUARE;
-            seen = [seen[1], (squared - 1.1 * (white / side).powi(2)).max(0.0).sqrt()];
-            if numbers.len() >= bends.len() / WHOLE_CELLS {
-                wide = wide.max(seen[1]);
-            }
-            before = before.max(squared.sqrt());
-        }
-        let [of_half, of_whole] = seen.map(|smooth| smooth.max(white / 16.0));
-        let whole = of_half.max(of_whole) * (of_whole / of_half.max(f64::MIN_POSITIVE)).clamp(1.0, GROWTH).sqrt();
-        Some(Errors { white, smooth, wide: wide.max(white / 16.0), whole, ..found })
+        let expected = |bend: &Bend, side: f64| {
+            let mean = variance(bend.q, bend.slope);
+            [mean, mean + shared(bend, side), rounding.variance(bend.q.into())]
+        };
+        let [wide, whole] = long_waves(&larger[EDGES - 1..], white, of_middle.max(1.0), numbers, expected);
+        Some(Errors { white, smooth, wide, whole, ..found })
     }
+}
+
+/// [`Errors::wide`] and [`Errors::whole`], by cells of the sides from [`EDGES`] on. A cell without an edge scatters about its
+/// plane by its white part and by what smaller cells showed to be smooth, at first `before`. `expected` gives variances: of a
+/// tile's mean, of the cell's mean if its error is as smooth, and of rounding.
+#[inline(always)]
+fn long_waves(
+    bends: &[Vec<Bend>],
+    white: f64,
+    mut before: f64,
+    numbers: &mut Vec<f32>,
+    expected: impl Fn(&Bend, f64) -> [f64; 3],
+) -> [f64; 2] {
+    let least = white / 16.0;
+    let (mut seen, mut wide) = ([None; 2], least);
+    for ((bends, &side), seen) in bends.iter().zip(&SIDES[EDGES..]).zip(&mut seen) {
+        let side = side as f64;
+        numbers.clear();
+        numbers.extend(bends.iter().filter_map(|bend| {
+            let [tile, mean, rounding] = expected(bend, side);
+            let own = (white * white + before * before) * tile + rounding;
+            let is_whole = f64::from(bend.residual) <= WITHOUT_EDGE * own;
+            is_whole.then_some((f64::from(bend.square) / mean) as f32)
+        }));
+        if numbers.len() < FEW {
+            break;
+        }
+        let squared = middle_of(numbers) / MEDIAN_OF_SQUARE;
+        let smooth = (squared - 1.1 * (white / side).powi(2)).max(0.0).sqrt().max(least);
+        if numbers.len() >= bends.len() / WHOLE_CELLS {
+            wide = wide.max(smooth);
+        }
+        *seen = Some(smooth);
+        before = before.max(squared.sqrt());
+    }
+    let growth = match seen {
+        [Some(of_half), Some(of_whole)] => (of_whole / of_half.max(f64::MIN_POSITIVE)).clamp(1.0, GROWTH),
+        _ => 1.0,
+    };
+    [wide, growth.sqrt() * seen.into_iter().flatten().fold(least, f64::max)]
 }
 
 impl Cell {

@@ -134,8 +134,8 @@ pub struct Planar {
     pub noise_growth: f64,
     /// Standard deviation of the part of the error that neighbouring pixels share over tens of pixels, in the units of
     /// `noise`: it does not average out within a surface. If this and `smooth_noise_growth` are 0, it is the sensor's
-    /// ([`crate::Sensor::smooth_noise`]), or else estimated from each map. What large regions of a map show beyond it counts
-    /// as well.
+    /// ([`crate::Sensor::smooth_noise`]), or else estimated from each map. What wide cells and large regions of a map show beyond it
+    /// counts as well.
     pub smooth_noise: f64,
     /// What that of depth grows by with the square of the range, 1/m; not used for disparity.
     pub smooth_noise_growth: f64,
@@ -155,47 +155,25 @@ const _: () = assert!(PADDED[0] == field::COLUMNS && PADDED[1] == field::ROWS);
 
 impl Planar {
     fn from_values(values: &[f64]) -> Self {
-        let &[
-            min,
-            min_area,
-            noise,
-            noise_growth,
-            smooth_noise,
-            smooth_noise_growth,
-            noise_scale,
-            ray,
-            inlier_threshold,
-        ] = values
-        else {
-            panic!("one value for each row of PARAMS");
-        };
+        assert_eq!(values.len(), PARAMS.len(), "one value for each row of PARAMS");
         Planar {
-            min: min as u32,
-            min_area,
-            noise,
-            noise_growth,
-            smooth_noise,
-            smooth_noise_growth,
-            noise_scale,
-            ray,
-            inlier_threshold,
+            min: values[0] as u32,
+            min_area: values[1],
+            noise: values[2],
+            noise_growth: values[3],
+            smooth_noise: values[4],
+            smooth_noise_growth: values[5],
+            noise_scale: values[6],
+            ray: values[7],
+            inlier_threshold: values[8],
         }
     }
 
     fn values(&self) -> [f64; 9] {
-        let &Planar { min, min_area, noise, noise_growth, .. } = self;
-        let &Planar { smooth_noise, smooth_noise_growth, noise_scale, ray, inlier_threshold, .. } = self;
-        [
-            min.into(),
-            min_area,
-            noise,
-            noise_growth,
-            smooth_noise,
-            smooth_noise_growth,
-            noise_scale,
-            ray,
-            inlier_threshold,
-        ]
+        let noise = [self.noise, self.noise_growth, self.smooth_noise, self.smooth_noise_growth];
+        let [white, white_growth, smooth, smooth_growth] = noise;
+        let Planar { min, min_area, noise_scale, ray, inlier_threshold, .. } = *self;
+        [min.into(), min_area, white, white_growth, smooth, smooth_growth, noise_scale, ray, inlier_threshold]
     }
 
     /// The noise to expect: each part as the parameters state it, or else as the sensor's, or else as a map shows it whose
@@ -353,7 +331,7 @@ impl Runner {
         self.look_at_shapes(&noise, threads);
         self.mark_curved(Optics { noise: &noise, rays }, threads);
         watch(Moment::Judged, self, &noise);
-        self.drop_explained(job.sensor.measure, threads);
+        self.drop_no_planes(job.sensor.measure, threads);
         job.done("judge");
 
         self.assign(&noise, false, threads);
@@ -463,11 +441,11 @@ impl Runner {
     }
 
     /// Leaves out regions that larger ones explain, and those that are seen edge-on.
-    fn drop_explained(&mut self, measure: Measure, threads: usize) {
+    fn drop_no_planes(&mut self, measure: Measure, threads: usize) {
         let Runner { pyramid, regions, merger, explainer, .. } = self;
         let mut explained = explainer.is_explained.iter();
-        let is_none = |region: &Region| explained.next() == Some(&true) || is_edge_on(region, measure);
-        merger.drop(&mut pyramid.grids[0], regions, threads, is_none);
+        let goes = |region: &Region| explained.next() == Some(&true) || is_edge_on(region, measure);
+        merger.drop(&mut pyramid.grids[0], regions, threads, goes);
     }
 
     /// Assign: the region of every pixel: its plane, or its curved region; while planes are sought, all curved ones as

@@ -58,8 +58,8 @@ pub(super) const SHOWN: f64 = 0.5;
 pub(super) const SHOWN_MOST: f64 = 10.0;
 
 /// Largest change of q from one pixel to the next, as a share of q in the middle of a region. Where it is
-/// more, depth doubles within four pixels, which is as much as a pixel's own ray is known to allow: flying pixels between two
-/// surfaces look so, and planes through the camera. The floor that a camera sees from 5 cm above it, 80 x 60 pixels, has 1/15.
+/// more, depth doubles within four pixels, and the place of a surface within its pixel decides where it is: flying pixels between
+/// two surfaces look so, and planes through the camera. The floor that a camera sees from 5 cm above it, 80 x 60 pixels, has 1/15.
 pub(super) const EDGE_ON: f64 = 1.0 / 4.0;
 
 /// Smallest bow of a curved region, root mean square, in deviations of the smooth part.
