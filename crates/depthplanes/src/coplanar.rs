@@ -14,10 +14,11 @@
 //!
 //! Not for small and noisy pieces far from each other: their normals are off by degrees, and they stay as they are.
 
+use crate::components::selection::LabelledRun;
 use crate::detection::{MetricPlane, Part, Plane};
 use crate::error::{Error, Result};
-use crate::group::reserve_to;
-use crate::select::{LabelledRun, MAX_PLANES};
+use crate::limits::MAX_PLANES;
+use crate::util::memory::reserve_to;
 
 /// How far two planes may be from one plane and still be joined.
 #[derive(Clone, Copy, Debug, PartialEq)]

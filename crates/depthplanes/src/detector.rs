@@ -1,13 +1,14 @@
 //! The front door: one method, one sensor, and the memory they reuse from frame to frame.
 
-use crate::camera::Sensor;
 use crate::coplanar::{Coplanar, Joiner};
 use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::explanation::Explanation;
 use crate::map::AnyView;
-use crate::methods::{self, Job, Method};
-use crate::parallel::on_threads;
+use crate::methods;
+use crate::methods::method::{Configured, Job, Parameters};
+use crate::sensor::Sensor;
+use crate::util::parallel::on_threads;
 
 /// Finds planes in frame after frame; after the first frame of a size it allocates nothing.
 ///
@@ -42,7 +43,7 @@ use crate::parallel::on_threads;
 /// # Ok::<(), depthplanes::Error>(())
 /// ```
 pub struct Detector {
-    method: Box<dyn Method>,
+    method: Configured,
     sensor: Sensor,
     threads: usize,
     curved: bool,
@@ -66,24 +67,21 @@ impl Default for Detector {
     /// A detector of the first of [`crate::methods::METHODS`] with its defaults, one thread, camera unknown.
     fn default() -> Self {
         let info = methods::default();
-        Self::from_method((info.build)(&info.defaults()).expect("a method accepts its own defaults"))
+        Self::of(info.of_values(&info.defaults()).expect("a method accepts its own defaults"))
     }
 }
 
 impl Detector {
-    /// A detector of the given method, one thread, camera unknown.
+    /// A detector of the given method, one thread, camera unknown: `parameters` is [`crate::Planar`], [`crate::Ngaf`], or
+    /// any method by name ([`crate::methods::find`]).
     ///
     /// # Errors
     /// [`Error::Parameter`] if the method's parameters are out of range.
-    pub fn new<M>(method: M) -> Result<Self>
-    where
-        M: TryInto<Box<dyn Method>, Error = Error>,
-    {
-        Ok(Self::from_method(method.try_into()?))
+    pub fn new(parameters: impl Parameters) -> Result<Self> {
+        Ok(Self::of(parameters.configured()?))
     }
 
-    /// A detector of a method that was built by name ([`crate::methods::find`]).
-    pub fn from_method(method: Box<dyn Method>) -> Self {
+    fn of(method: Configured) -> Self {
         Detector {
             method,
             sensor: Sensor::default(),
@@ -153,7 +151,7 @@ impl Detector {
         let joiner = self.joiner.as_mut();
         let mut job = Job { sensor: self.sensor, threads: self.threads, curved: self.curved, joiner, observer };
         let (map, method, detection) = (map.into(), &mut self.method, &mut self.detection);
-        on_threads(self.threads, || method.run(map, &mut job, detection))?;
+        on_threads(self.threads, || method.0.run(map, &mut job, detection))?;
         Ok(&self.detection)
     }
 
@@ -181,6 +179,6 @@ impl Detector {
         }
         let mut job =
             Job { sensor: self.sensor, threads: self.threads, curved: false, joiner: None, observer: &mut |_| () };
-        self.method.explain(map, &mut job, at)
+        self.method.0.explain(map, &mut job, at)
     }
 }

@@ -9,7 +9,7 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// A side of the map is 0 or longer than [`crate::map::MAX_SIDE`].
+    /// A side of the map is 0 or longer than [`crate::limits::MAX_SIDE`].
     Size {
         /// Columns given.
         width: usize,
@@ -129,8 +129,8 @@ impl fmt::Display for Error {
             Error::Size { width, height } => write!(
                 f,
                 "the map is {width} x {height} pixels; each side must be 1 to {} and the whole at most {} pixels",
-                crate::map::MAX_SIDE,
-                crate::map::MAX_PIXELS
+                crate::limits::MAX_SIDE,
+                crate::limits::MAX_PIXELS
             ),
             Error::Length { given, least, most } if least == most => {
                 write!(

@@ -38,27 +38,28 @@
 //! `examples/` has programs to copy from: `own_pixels`, `camera_loop`, `floor_height`. Files are read and written by the crate
 //! `depthplanes-io`. Feature `parallel` (on by default): large maps on rayon's threads; the answer is the same for any number.
 
+mod baselines;
 pub mod camera;
+mod components;
 pub mod coplanar;
-pub mod describe;
 pub mod detection;
 mod detector;
-pub mod enhance;
 pub mod error;
 pub mod explanation;
-pub mod fit;
-pub mod group;
+pub mod limits;
 pub mod map;
 pub mod methods;
 pub mod metrics;
 pub mod noise;
 pub mod outline;
-mod parallel;
-mod random;
 pub mod scene;
-pub mod select;
+mod sensor;
+mod statistics;
+#[cfg(test)]
+mod tests;
+mod util;
 
-pub use camera::{Hessian, Intrinsics, Measure, Sensor};
+pub use camera::{Hessian, Intrinsics, Measure};
 pub use coplanar::Coplanar;
 pub use detection::{CovarianceSource, Detection, Part, Plane};
 pub use detector::Detector;
@@ -66,6 +67,18 @@ pub use error::{Error, Result};
 pub use explanation::Explanation;
 pub use map::{AnyView, DepthView, Pixel};
 pub use methods::{Ngaf, Planar};
+pub use sensor::Sensor;
+
+/// Stages by themselves, for the tests, oracles and benchmarks of this project. No part of the interface: any version may
+/// change them.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::components::selection::{LabelledRun, Selection};
+    pub use crate::components::{Compiles, Grouper, Groups, Kernel, LinkRule, Run, best, kernels};
+    pub use crate::methods::Enhancer;
+    pub use crate::statistics::least_squares::{AffineFit, Moments, ValueSums, hessian, metric_covariance};
+    pub use crate::statistics::{Describer, Seen, Tally};
+}
 
 /// The README's example is a documentation test.
 #[cfg(doctest)]

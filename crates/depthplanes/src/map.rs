@@ -5,16 +5,9 @@
 //! in place.
 
 use crate::error::{Error, Result};
-
-/// Longest side of a map, in pixels.
-pub const MAX_SIDE: usize = 65_535;
-/// Most pixels of a map; group ids and sums are sized for it.
-pub const MAX_PIXELS: usize = 1 << 30;
+use crate::limits::{MAX_PIXELS, MAX_SIDE};
 
 mod sealed {
-    use crate::enhance::{Buffers, Columns, Enhancer};
-    use crate::group::{Compiled, Isa, Kernel, LinkRule, RowMasks};
-
     /// What the stages need of a pixel type, and nobody else.
     pub trait Sealed: Sized {
         /// |a - b|.
@@ -23,16 +16,10 @@ mod sealed {
         fn floor_from(theta: f64) -> Self;
         /// What kernels compare with for the range's high end: `high - low` for integers, else `high`.
         fn high_or_span(low: Self, high: Self) -> Self;
-        /// The kernel's functions for this type.
-        fn compiled(kernel: &Kernel) -> Compiled<Self>;
-        /// The enhancer's memory for this type.
-        fn buffers(enhancer: &mut Enhancer) -> (&mut Buffers<Self>, &mut Columns);
-        /// The instruction set's masks for this type.
-        fn masks<I: Isa>(row: &[Self], up: &[Self], rule: &LinkRule<Self>, out: RowMasks<'_>);
     }
 
     macro_rules! sealed {
-        ($t:ident, $masks:ident, $distance:expr, $floor_from:expr, $high_or_span:expr) => {
+        ($t:ident, $distance:expr, $floor_from:expr, $high_or_span:expr) => {
             impl Sealed for $t {
                 #[inline(always)]
                 fn distance(self, other: Self) -> Self {
@@ -44,23 +31,13 @@ mod sealed {
                 fn high_or_span(low: Self, high: Self) -> Self {
                     $high_or_span(low, high)
                 }
-                fn compiled(kernel: &Kernel) -> Compiled<Self> {
-                    kernel.$t
-                }
-                fn buffers(enhancer: &mut Enhancer) -> (&mut Buffers<Self>, &mut Columns) {
-                    (&mut enhancer.$t, &mut enhancer.columns)
-                }
-                #[inline(always)]
-                fn masks<I: Isa>(row: &[Self], up: &[Self], rule: &LinkRule<Self>, out: RowMasks<'_>) {
-                    I::$masks(row, up, rule, out)
-                }
             }
         };
     }
     // `as` from a float clamps to the type's range and drops the fraction.
-    sealed!(u8, masks_u8, u8::abs_diff, |theta: f64| theta as u8, |low, high: u8| high - low);
-    sealed!(u16, masks_u16, u16::abs_diff, |theta: f64| theta as u16, |low, high: u16| high - low);
-    sealed!(f32, masks_f32, |a: f32, b: f32| (a - b).abs(), |theta: f64| theta as f32, |_, high| high);
+    sealed!(u8, u8::abs_diff, |theta: f64| theta as u8, |low, high: u8| high - low);
+    sealed!(u16, u16::abs_diff, |theta: f64| theta as u16, |low, high: u16| high - low);
+    sealed!(f32, |a: f32, b: f32| (a - b).abs(), |theta: f64| theta as f32, |_, high| high);
 }
 
 /// A pixel type: `u8`, `u16` or `f32`.
@@ -300,6 +277,7 @@ macro_rules! with_view {
         }
     };
 }
+pub(crate) use with_view;
 
 impl AnyView<'_> {
     /// Columns.

@@ -3,42 +3,43 @@
 //! In: a region image. Out: the detection: connected pieces of a region with more than `min` pixels, by decreasing size,
 //! fitted, described and painted.
 
+use super::method::Job;
+use super::parameter::{Param, ParamKind};
 use super::records::Records;
-use super::{Job, Param, ParamKind};
-use crate::describe::{Describer, Seen};
+use crate::components::selection::Selection;
+use crate::components::{Grouper, LinkRule};
 use crate::detection::Detection;
 use crate::error::Result;
-use crate::group::{Grouper, LinkRule};
 use crate::map::{DepthView, Pixel};
 use crate::noise::NoiseModel;
-use crate::select::Selection;
+use crate::statistics::{Describer, Seen};
 
 /// Finishes detections; reuses its memory.
 #[derive(Default)]
-pub(super) struct Finisher {
-    pub(super) grouper: Grouper,
-    pub(super) selection: Selection,
-    pub(super) describer: Describer,
+pub(crate) struct Finisher {
+    pub(crate) grouper: Grouper,
+    pub(crate) selection: Selection,
+    pub(crate) describer: Describer,
 }
 
 /// What a method knows of its regions beside their pixels.
 #[derive(Clone, Copy)]
-pub(super) struct Wanted<'a> {
+pub(crate) struct Wanted<'a> {
     /// A plane has strictly more pixels than this.
-    pub(super) min: u32,
+    pub(crate) min: u32,
     /// A plane has at least this area, m2; 0 for off.
-    pub(super) min_area: f64,
+    pub(crate) min_area: f64,
     /// What is known of the map's noise.
-    pub(super) noise: Option<&'a NoiseModel>,
+    pub(crate) noise: Option<&'a NoiseModel>,
     /// Valid pixels of the map.
-    pub(super) valid_pixels: usize,
+    pub(crate) valid_pixels: usize,
 }
 
 /// The stages of [`Finisher::finish`], in order.
-pub(super) const STAGES: [&str; 4] = ["group", "select", "fit", "label"];
+pub(crate) const STAGES: [&str; 4] = ["group", "select", "fit", "label"];
 
 /// The parameter that all methods have.
-pub(super) const MIN: Param = Param {
+pub(crate) const MIN: Param = Param {
     name: "min",
     default: 100.0,
     min: 0.0,
@@ -54,7 +55,7 @@ impl Finisher {
     ///
     /// # Errors
     /// [`crate::Error::TooManyPlanes`].
-    pub(super) fn finish<T: Pixel>(
+    pub(crate) fn finish<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
         image: &DepthView<'_, u16>,
@@ -69,7 +70,7 @@ impl Finisher {
     ///
     /// # Errors
     /// [`crate::Error::TooManyPlanes`].
-    pub(super) fn finish_united<T: Pixel>(
+    pub(crate) fn finish_united<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
         image: &DepthView<'_, u16>,

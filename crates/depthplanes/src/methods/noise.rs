@@ -1,10 +1,10 @@
 //! What the parameters of `planar` and `mdl` say of a map's noise: its white part, which averages out, and of `planar`
 //! its smooth part as well, which does not within a surface.
 
-use super::{Param, ParamKind};
+use super::parameter::{Param, ParamKind};
 use crate::noise::{SensorNoise, Space};
 
-pub(super) const NOISE: Param = Param {
+pub(crate) const NOISE: Param = Param {
     name: "noise",
     default: 0.0,
     min: 0.0,
@@ -15,7 +15,7 @@ pub(super) const NOISE: Param = Param {
     source: None,
 };
 
-pub(super) const NOISE_GROWTH: Param = Param {
+pub(crate) const NOISE_GROWTH: Param = Param {
     name: "noise-growth",
     default: 0.0,
     min: 0.0,
@@ -26,7 +26,7 @@ pub(super) const NOISE_GROWTH: Param = Param {
     source: None,
 };
 
-pub(super) const SMOOTH_NOISE: Param = Param {
+pub(crate) const SMOOTH_NOISE: Param = Param {
     name: "smooth-noise",
     default: 0.0,
     min: 0.0,
@@ -37,7 +37,7 @@ pub(super) const SMOOTH_NOISE: Param = Param {
     source: None,
 };
 
-pub(super) const SMOOTH_NOISE_GROWTH: Param = Param {
+pub(crate) const SMOOTH_NOISE_GROWTH: Param = Param {
     name: "smooth-noise-growth",
     default: 0.0,
     min: 0.0,
@@ -48,7 +48,7 @@ pub(super) const SMOOTH_NOISE_GROWTH: Param = Param {
     source: None,
 };
 
-pub(super) const NOISE_SCALE: Param = Param {
+pub(crate) const NOISE_SCALE: Param = Param {
     name: "noise-scale",
     default: 1.0,
     min: 0.01,
@@ -60,13 +60,13 @@ pub(super) const NOISE_SCALE: Param = Param {
 };
 
 /// The noise that [`NOISE`] and [`NOISE_GROWTH`] state, or those of the smooth part; none if they are 0.
-pub(super) fn stated(space: Space, noise: f64, growth: f64) -> Option<SensorNoise> {
+pub(crate) fn stated(space: Space, noise: f64, growth: f64) -> Option<SensorNoise> {
     let is_stated = noise > 0.0 || (space != Space::Value && growth > 0.0);
     is_stated.then(|| of_kind(space, noise, growth))
 }
 
 /// Noise of the kind that a map has.
-pub(super) fn of_kind(space: Space, base: f64, growth: f64) -> SensorNoise {
+pub(crate) fn of_kind(space: Space, base: f64, growth: f64) -> SensorNoise {
     match space {
         Space::InverseDepth { .. } => SensorNoise::Depth { base, growth },
         Space::Value => SensorNoise::Value { sigma: base },

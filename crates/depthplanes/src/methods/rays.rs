@@ -3,54 +3,54 @@
 //! In: what is known of the sensor, and q at places of the image. Out: points and planes. Where the camera is not known, it
 //! is [`Intrinsics::assumed`].
 
-use super::affine::{Affine, Around};
-use crate::camera::{Intrinsics, Measure, Sensor};
+use crate::camera::{Intrinsics, Measure};
+use crate::sensor::Sensor;
 
 /// A point or a direction.
-pub(super) type Vec3 = [f64; 3];
+pub(crate) type Vec3 = [f64; 3];
 
-pub(super) fn dot(a: Vec3, b: Vec3) -> f64 {
+pub(crate) fn dot(a: Vec3, b: Vec3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(super) fn sub(a: Vec3, b: Vec3) -> Vec3 {
+pub(crate) fn sub(a: Vec3, b: Vec3) -> Vec3 {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-pub(super) fn cross(a: Vec3, b: Vec3) -> Vec3 {
+pub(crate) fn cross(a: Vec3, b: Vec3) -> Vec3 {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// The vector at length 1; none if it has no direction.
-pub(super) fn unit(a: Vec3) -> Option<Vec3> {
+pub(crate) fn unit(a: Vec3) -> Option<Vec3> {
     let length = dot(a, a).sqrt();
     (length > 0.0 && length.is_finite()).then(|| a.map(|x| x / length))
 }
 
 /// A plane in space, `normal . point = distance`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Plane3 {
-    pub(super) normal: Vec3,
-    pub(super) distance: f64,
+pub(crate) struct Plane3 {
+    pub(crate) normal: Vec3,
+    pub(crate) distance: f64,
 }
 
 impl Plane3 {
     /// Through three points; none if they lie on a line.
-    pub(super) fn through([a, b, c]: [Vec3; 3]) -> Option<Plane3> {
+    pub(crate) fn through([a, b, c]: [Vec3; 3]) -> Option<Plane3> {
         let normal = unit(cross(sub(b, a), sub(c, a)))?;
         Some(Plane3 { normal, distance: dot(normal, a) })
     }
 
     /// Signed distance of a point.
     #[inline(always)]
-    pub(super) fn off(&self, point: Vec3) -> f64 {
+    pub(crate) fn off(&self, point: Vec3) -> f64 {
         dot(self.normal, point) - self.distance
     }
 }
 
 /// Rays of the pixels, and inverse depth as an affine function of q.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rays {
+pub(crate) struct Rays {
     camera: Intrinsics,
     /// Inverse depth is `slope q + offset`.
     slope: f64,
@@ -59,7 +59,7 @@ pub(super) struct Rays {
 
 impl Rays {
     /// Of a sensor. Of disparity, inverse depth is known up to a factor only, which angles do not depend on.
-    pub(super) fn of(sensor: &Sensor, width: usize, height: usize) -> Self {
+    pub(crate) fn of(sensor: &Sensor, width: usize, height: usize) -> Self {
         let (slope, offset) = match sensor.measure {
             Measure::InverseDepth { slope, offset } => (slope, offset),
             Measure::Depth { .. } | Measure::Disparity => (1.0, 0.0), // q of depth is in 1/m
@@ -68,44 +68,43 @@ impl Rays {
         Rays { camera, slope, offset }
     }
 
-    /// The same, lengths being metres where unit and camera are known and median depths of the map where they are not.
-    pub(super) fn scaled(sensor: &Sensor, affine: &Affine) -> Self {
-        let rays = Rays::of(sensor, affine.width, affine.height);
+    /// The same, lengths being metres where unit and camera are known and median depths of the map where they are not;
+    /// `median` finds the median of q.
+    pub(crate) fn scaled(sensor: &Sensor, [width, height]: [usize; 2], median: impl FnOnce() -> f64) -> Self {
+        let rays = Rays::of(sensor, width, height);
         if sensor.intrinsics.is_some() && sensor.measure != Measure::Disparity {
             return rays;
         }
-        let median = affine.range(0.5).map_or(1.0, |[low, _]| low);
-        Rays { slope: 1.0 / median, offset: 0.0, ..rays }
+        Rays { slope: 1.0 / median(), offset: 0.0, ..rays }
     }
 
     /// Where the ray of a place meets q, behind the camera or at infinity too.
-    pub(super) fn at(&self, [u, v]: [f64; 2], q: f64) -> Vec3 {
+    pub(crate) fn at(&self, [u, v]: [f64; 2], q: f64) -> Vec3 {
         let Intrinsics { fx, fy, cx, cy } = self.camera;
         let depth = 1.0 / (self.slope * q + self.offset);
         [(u - cx) / fx * depth, (v - cy) / fy * depth, depth]
     }
 
     /// The point of a pixel, none at infinity.
-    pub(super) fn point(&self, place: [f64; 2], q: f64) -> Option<Vec3> {
+    pub(crate) fn point(&self, place: [f64; 2], q: f64) -> Option<Vec3> {
         Some(self.at(place, q)).filter(|[_, _, depth]| *depth > 0.0 && depth.is_finite())
     }
 
     /// n of the plane `n . point = 1` whose q changes by a gradient from column to column and from row to row and is
     /// `q_at` a place: inverse depth is affine in u and v too.
-    pub(super) fn inverse(&self, [a, b]: [f64; 2], q_at: impl Fn(f64, f64) -> f64) -> Vec3 {
+    pub(crate) fn inverse(&self, [a, b]: [f64; 2], q_at: impl Fn(f64, f64) -> f64) -> Vec3 {
         let Intrinsics { fx, fy, cx, cy } = self.camera;
         [self.slope * a * fx, self.slope * b * fy, self.slope * q_at(cx, cy) + self.offset]
     }
 
     /// The plane in space where `q = a u + b v + c`, turned away from the camera; none if it passes through the camera.
-    pub(super) fn plane(&self, [a, b, c]: [f64; 3]) -> Option<Plane3> {
+    pub(crate) fn plane(&self, [a, b, c]: [f64; 3]) -> Option<Plane3> {
         let inverse = self.inverse([a, b], |u, v| c + a * u + b * v);
         Some(Plane3 { normal: unit(inverse)?, distance: 1.0 / dot(inverse, inverse).sqrt() })
     }
 
-    /// The unit normal of the plane around a pixel, turned away from the camera.
-    pub(super) fn normal(&self, [u, v]: [f64; 2], around: &Around) -> Option<Vec3> {
-        let [a, b] = around.gradient;
-        unit(self.inverse([a, b], |x, y| around.q + a * (x - u) + b * (y - v)))
+    /// The unit normal of the plane whose q is `q` at a pixel and changes by that gradient, turned away from the camera.
+    pub(crate) fn normal(&self, [u, v]: [f64; 2], [a, b]: [f64; 2], q: f64) -> Option<Vec3> {
+        unit(self.inverse([a, b], |x, y| q + a * (x - u) + b * (y - v)))
     }
 }

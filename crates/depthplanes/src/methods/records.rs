@@ -3,27 +3,27 @@
 //! In: selected groups and their records. Out: the records that remain, and the selection with their labels, which
 //! stay 1.. by decreasing pixel count.
 
+use crate::components::Groups;
+use crate::components::selection::Selection;
 use crate::coplanar::Joiner;
-use crate::describe::{Describer, Seen};
 use crate::detection::{Detection, Plane};
-use crate::group::Groups;
 use crate::map::{DepthView, Pixel};
-use crate::select::Selection;
+use crate::statistics::{Describer, Seen};
 
 /// The planes of a map and all that their records are made of.
-pub(super) struct Records<'a, T> {
-    pub(super) map: &'a DepthView<'a, T>,
-    pub(super) groups: &'a Groups,
-    pub(super) margin: u32,
-    pub(super) seen: Seen<'a>,
-    pub(super) threads: usize,
-    pub(super) selection: &'a mut Selection,
-    pub(super) describer: &'a mut Describer,
+pub(crate) struct Records<'a, T> {
+    pub(crate) map: &'a DepthView<'a, T>,
+    pub(crate) groups: &'a Groups,
+    pub(crate) margin: u32,
+    pub(crate) seen: Seen<'a>,
+    pub(crate) threads: usize,
+    pub(crate) selection: &'a mut Selection,
+    pub(crate) describer: &'a mut Describer,
 }
 
 impl<T: Pixel> Records<'_, T> {
     /// Joins coplanar planes, if that is wanted, and fits their unions anew from all pixels.
-    pub(super) fn join(&mut self, joiner: Option<&mut Joiner>, out: &mut Detection) {
+    pub(crate) fn join(&mut self, joiner: Option<&mut Joiner>, out: &mut Detection) {
         let Records { map, groups, margin, seen, threads, selection, describer } = self;
         let Some(joiner) = joiner else { return };
         let is_any_joined = joiner.join(&out.planes, selection.runs(groups));
@@ -39,7 +39,7 @@ impl<T: Pixel> Records<'_, T> {
 
     /// Drops planes of less than an area in square metres, and those without metres. One that reaches infinity has
     /// no area and stays.
-    pub(super) fn drop_smaller(&mut self, area_m2: f64, out: &mut Detection) {
+    pub(crate) fn drop_smaller(&mut self, area_m2: f64, out: &mut Detection) {
         let is_large = |plane: &Plane| {
             let metric = plane.metric.as_ref();
             metric.is_some_and(|metric| metric.area_m2.is_none_or(|area| area >= area_m2))

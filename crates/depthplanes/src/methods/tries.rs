@@ -3,30 +3,30 @@
 //! In: a method's values, a map, a pixel, and changes in the order of preference. Out: the first that works. Nothing
 //! is suggested that was not run.
 
-use super::{Job, MethodInfo};
-use crate::camera::Sensor;
+use super::method::{Job, MethodInfo};
 use crate::detection::Detection;
 use crate::explanation::Suggestion;
 use crate::map::AnyView;
+use crate::sensor::Sensor;
 
 /// A map and the method that finds no plane at one of its pixels.
-pub(super) struct Tries<'a> {
-    pub(super) info: &'static MethodInfo,
+pub(crate) struct Tries<'a> {
+    pub(crate) info: &'static MethodInfo,
     /// Its values, in the order of its parameters.
-    pub(super) values: &'a [f64],
-    pub(super) map: AnyView<'a>,
-    pub(super) sensor: Sensor,
-    pub(super) at: [usize; 2],
+    pub(crate) values: &'a [f64],
+    pub(crate) map: AnyView<'a>,
+    pub(crate) sensor: Sensor,
+    pub(crate) at: [usize; 2],
     /// Planes that it finds as it is.
-    pub(super) planes: usize,
+    pub(crate) planes: usize,
 }
 
 /// Parameters with their values.
-pub(super) type Change = Vec<(&'static str, f64)>;
+pub(crate) type Change = Vec<(&'static str, f64)>;
 
 impl Tries<'_> {
     /// The first change after which the pixel belongs to a plane.
-    pub(super) fn first(&self, changes: impl IntoIterator<Item = Change>) -> Option<Suggestion> {
+    pub(crate) fn first(&self, changes: impl IntoIterator<Item = Change>) -> Option<Suggestion> {
         changes.into_iter().find_map(|change| self.attempt(change))
     }
 
@@ -35,7 +35,7 @@ impl Tries<'_> {
         for &(name, value) in &change {
             values[self.info.params.iter().position(|param| param.name == name)?] = value;
         }
-        let mut method = (self.info.build)(&values).ok()?;
+        let mut method = self.info.of_values(&values).ok()?.0;
         let mut found = Detection::default();
         let mut job = Job { sensor: self.sensor, threads: 1, curved: false, joiner: None, observer: &mut |_| () };
         method.run(self.map, &mut job, &mut found).ok()?;
@@ -54,7 +54,7 @@ impl Tries<'_> {
 const STRAY: usize = 8;
 
 /// The changes of `min` that may let a surface of so many pixels in: little less than it has, then fewer.
-pub(super) fn smaller_min(pixels: usize) -> impl Iterator<Item = Change> {
+pub(crate) fn smaller_min(pixels: usize) -> impl Iterator<Item = Change> {
     let shares = [0.97, 0.8, 0.6, 0.4, 0.2, 0.1, 0.0].into_iter().filter(move |_| pixels >= STRAY);
     shares.map(move |share| vec![("min", floored(share * pixels as f64))])
 }
@@ -66,12 +66,12 @@ fn floored(value: f64) -> f64 {
 }
 
 /// Not below, of two digits.
-pub(super) fn rounded_up(value: f64) -> f64 {
+pub(crate) fn rounded_up(value: f64) -> f64 {
     rounded(value, |number| (number - 1e-9).ceil())
 }
 
 /// Not above, of two digits.
-pub(super) fn rounded_down(value: f64) -> f64 {
+pub(crate) fn rounded_down(value: f64) -> f64 {
     rounded(value, |number| (number + 1e-9).floor())
 }
 

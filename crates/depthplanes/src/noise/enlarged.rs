@@ -8,8 +8,8 @@
 //! coarse disparities differ in few columns: it takes so many that by chance they would not all be borders. Where it is
 //! chance all the same nothing is lost, for pixels of one block are alike.
 
-use crate::group::vectorised;
 use crate::map::{DepthView, Pixel};
+use crate::util::simd::vectorised;
 
 #[cfg(test)]
 mod tests;

@@ -4,15 +4,18 @@
 //! [`Scales`] sees of the maps' cells. What rounding to steps makes, D^2 / 12, is taken off the white part: rounding is
 //! part of the map, not of the sensor.
 
+use super::model::NoiseModel;
 use super::rounding::{Rounding, RoundingFinder};
 use super::scales::{Cell, Cells, Errors, FEW, SIDES, SUMMED, Scales};
+use super::sensor_noise::SensorNoise;
+use super::space::{LARGEST_Q, Space};
 use super::steps::Steps;
-use super::{LARGEST_Q, NoiseModel, SensorNoise, Space};
-use crate::camera::{Measure, Sensor};
+use crate::camera::Measure;
 use crate::error::{Error, Result};
-use crate::fit::Moments;
+use crate::map::with_view;
 use crate::map::{AnyView, DepthView, Pixel};
-use crate::with_view;
+use crate::sensor::Sensor;
+use crate::statistics::least_squares::Moments;
 
 /// Columns and rows that maps are filled up to a multiple of, as in `planar`.
 pub(crate) const PADDED: [usize; 2] = [128, 16];
@@ -183,21 +186,19 @@ fn beside_rounding(errors: &Errors, [low, high]: [f64; 2], space: Space, roundin
     Errors { constant, square, ..*errors }.times(1.0, space)
 }
 
-impl NoiseModel {
-    /// Of one map, for methods that hold single pixels against planes: the sensor's noise as stated, or else both parts of
-    /// it as the map shows them, since a pixel is off by both; none where it shows nothing.
-    pub(crate) fn of_map<T: Pixel>(map: &DepthView<'_, T>, sensor: &Sensor) -> Self {
-        let (measure, space) = (sensor.measure, Space::of(sensor.measure));
-        let mut estimator = Estimator::default();
-        let step = estimator.look(map, space);
-        let stated = sensor.noise.and_then(|noise| NoiseModel::new(measure, noise, step));
-        let estimated = || {
-            let rounding = estimator.rounding.unwrap_or(Rounding::NONE);
-            let errors = estimator.scales.errors(space, &rounding).unwrap_or(Errors::NONE);
-            Some(NoiseModel::new(measure, errors.times(errors.white.hypot(errors.whole), space), step)?.of_scatter())
-        };
-        stated.or_else(estimated).expect("an estimate is of the map's own kind")
-    }
+/// The noise of one map, for methods that hold single pixels against planes: the sensor's noise as stated, or else both parts of
+/// it as the map shows them, since a pixel is off by both; none where it shows nothing.
+pub(crate) fn noise_of_map<T: Pixel>(map: &DepthView<'_, T>, sensor: &Sensor) -> NoiseModel {
+    let (measure, space) = (sensor.measure, Space::of(sensor.measure));
+    let mut estimator = Estimator::default();
+    let step = estimator.look(map, space);
+    let stated = sensor.noise.and_then(|noise| NoiseModel::new(measure, noise, step));
+    let estimated = || {
+        let rounding = estimator.rounding.unwrap_or(Rounding::NONE);
+        let errors = estimator.scales.errors(space, &rounding).unwrap_or(Errors::NONE);
+        Some(NoiseModel::new(measure, errors.times(errors.white.hypot(errors.whole), space), step)?.of_scatter())
+    };
+    stated.or_else(estimated).expect("an estimate is of the map's own kind")
 }
 
 /// A square of so many pixels a side, from its first (u, v), as far as it lies on the map. As in `planar`, tiles whose pixels

@@ -11,9 +11,10 @@
 //! planes that no row or column crosses every pixel of a line has one value: such repeats say nothing, and there the
 //! step is what all values are multiples of, which is 0 for true floats.
 
-use super::{LANES, Lanes, Space};
-use crate::group::reserve_to;
+use super::lanes::{LANES, Lanes};
+use super::space::Space;
 use crate::map::{DepthView, Pixel};
+use crate::util::memory::reserve_to;
 
 mod sample;
 #[cfg(test)]
@@ -49,6 +50,14 @@ const OFTEN: usize = 32;
 /// The quantile of the gaps: below are fewer than a fifth, values between the steps; a fifth of the gaps is one step
 /// long while a fifth of the values is seen.
 const QUANTILE: f64 = 0.2;
+
+/// The share of rounding to steps of that square that follows the signal, where pixels scatter by that variance, instead of
+/// being dithered: none from a scatter of half a step on. (The exact share is an exponential of the ratio; this has no
+/// function that differs between machines.)
+#[inline(always)]
+pub(crate) fn steady(square: f64, scatter: f64) -> f64 {
+    if square > 0.0 { (4.0 / 3.0 * (1.0 - 4.0 * scatter / square)).clamp(0.0, 1.0) } else { 0.0 }
+}
 
 /// The steps of q, the space where planes are affine ([`Space`]), over q.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,8 +5,11 @@
 //! side, smooth error does not; nor does what a scene's edges make, which the median passes over as long as they are less
 //! than half of what is looked at.
 
-use super::{Rounding, SensorNoise, Space, steady};
-use crate::group::{reserve_to, vectorised};
+use super::rounding::{Rounding, steady};
+use super::sensor_noise::SensorNoise;
+use super::space::Space;
+use crate::util::memory::reserve_to;
+use crate::util::simd::vectorised;
 
 /// Sides of the cells, pixels.
 pub(super) const SIDES: [usize; 4] = [4, 8, 16, 32];

@@ -3,8 +3,8 @@
 //! In: a map. Out: the distance of neighbouring values that occur, map units. Scaled maps leave out many values, and
 //! coarse sensors leave out more the further they look.
 
-use crate::group::vectorised;
 use crate::map::{DepthView, Pixel};
+use crate::util::simd::vectorised;
 
 /// Values that are looked at, about.
 const SAMPLE: usize = 1 << 15;

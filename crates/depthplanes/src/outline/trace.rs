@@ -11,7 +11,7 @@
 use super::Corner;
 use crate::detection::Detection;
 use crate::error::{Error, Result};
-use crate::map::{MAX_PIXELS, MAX_SIDE};
+use crate::limits::{MAX_PIXELS, MAX_SIDE};
 use std::ops::Range;
 
 /// A ring: where its corners lie.

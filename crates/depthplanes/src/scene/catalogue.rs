@@ -9,7 +9,7 @@ use super::pose::Pose;
 use super::room;
 use super::surfaces::{Place, Scene};
 use crate::error::{Error, Result};
-use crate::random::Random;
+use crate::util::random::Random;
 
 /// A scene and the place of the camera in it.
 #[derive(Clone, Debug, PartialEq)]

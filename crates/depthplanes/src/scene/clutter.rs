@@ -3,7 +3,7 @@
 use super::catalogue::Staged;
 use super::pose::Pose;
 use super::surfaces::{Place, Scene};
-use crate::random::Random;
+use crate::util::random::Random;
 
 /// A piece of floor with the circles already taken.
 struct Floor {

@@ -39,7 +39,7 @@ mod spec;
 mod surfaces;
 mod truth;
 
-pub use crate::random::Random;
+pub use crate::util::random::Random;
 pub use catalogue::{SCENES, SceneInfo, Staged, find};
 pub use pose::{Camera, Pose};
 pub use sensors::{SENSORS, SensorError, SensorInfo, SensorModel};
@@ -47,9 +47,9 @@ pub use spec::{MAX_FRAME_PIXELS, Spec};
 pub use surfaces::{Place, Scene, Strip, Surface};
 pub use truth::{Truth, TruthPlane};
 
-use crate::camera::Sensor;
 use crate::error::Result;
 use crate::map::{AnyView, DepthView};
+use crate::sensor::Sensor;
 
 /// The pixels of a map, row by row, top row first; 0 = missing.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,7 +7,7 @@
 use super::exact::{Vec3, add, dot, scale, sin_cos_deg, sub};
 use crate::camera::Intrinsics;
 use crate::error::{Error, Result};
-use crate::map::{MAX_PIXELS, MAX_SIDE};
+use crate::limits::{MAX_PIXELS, MAX_SIDE};
 
 /// Position and direction of a camera in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]

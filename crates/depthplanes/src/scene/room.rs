@@ -5,7 +5,7 @@
 use super::catalogue::Staged;
 use super::pose::Pose;
 use super::surfaces::{Place, Scene};
-use crate::random::Random;
+use crate::util::random::Random;
 
 /// A rectangle in a wall: along the wall from, to; above the floor from, to.
 type Opening = [f64; 4];

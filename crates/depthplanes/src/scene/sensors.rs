@@ -18,7 +18,7 @@ use super::pose::{Camera, KINECT_FOCAL_PX};
 use super::surfaces::Scene;
 use crate::camera::Measure;
 use crate::error::{Error, Result};
-use crate::random::Random;
+use crate::util::random::Random;
 use depth_camera::{DepthCamera, Output};
 
 /// A depth camera's behaviour.

@@ -8,7 +8,7 @@ use super::pose::Camera;
 use super::sensors::SensorModel;
 use super::{SceneFrame, render};
 use crate::error::{Error, Result};
-use crate::map::MAX_SIDE;
+use crate::limits::MAX_SIDE;
 
 /// Most pixels of a frame that a [`Spec`] may ask for; a frame takes about 30 bytes each.
 pub const MAX_FRAME_PIXELS: usize = 1 << 25;

@@ -3,19 +3,26 @@
 //! In: a run of the method that is watched once, when all its groups are known and none is dropped by a condition of
 //! ours. Out: an [`Explanation`].
 
-use super::{INFO, Ngaf, Runner, Watch};
-use crate::describe::Tally;
+use super::parameters::Ngaf;
+use super::pipeline::{Runner, Watch};
+use crate::components::selection::Selection;
+use crate::components::{Groups, LinkRule};
 use crate::detection::Detection;
 use crate::error::Result;
 use crate::explanation::{Explanation, Finding, Limit, Verdict};
-use crate::group::{Groups, LinkRule};
+use crate::map::with_view;
 use crate::map::{AnyView, DepthView, Pixel};
-use crate::methods::Job;
+use crate::methods::method::{Job, MethodInfo};
 use crate::methods::tries::{Change, Tries, rounded_up, smaller_min};
-use crate::select::Selection;
-use crate::with_view;
+use crate::statistics::Tally;
 
-pub(super) fn explain(runner: &mut Runner, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) -> Result<Explanation> {
+pub(super) fn explain(
+    runner: &mut Runner,
+    info: &'static MethodInfo,
+    map: AnyView<'_>,
+    job: &mut Job<'_>,
+    at: [usize; 2],
+) -> Result<Explanation> {
     let (mut out, params) = (Detection::default(), runner.params);
     let mut seen =
         Seen { at, params, before: None, findings: Vec::new(), nearest: None, pixels: 0, place: None, dropped: None };
@@ -25,9 +32,9 @@ pub(super) fn explain(runner: &mut Runner, map: AnyView<'_>, job: &mut Job<'_>, 
     })?;
     let verdict = seen.verdict(&out);
     let values = params.values();
-    let tries = Tries { info: &INFO, values: &values, map, sensor: job.sensor, at, planes: out.planes.len() };
+    let tries = Tries { info, values: &values, map, sensor: job.sensor, at, planes: out.planes.len() };
     let suggestions = seen.changes(&verdict).into_iter().filter_map(|changes| tries.first(changes)).collect();
-    Ok(Explanation { at, method: INFO.name, findings: seen.findings, verdict, suggestions })
+    Ok(Explanation { at, method: info.name, findings: seen.findings, verdict, suggestions })
 }
 
 /// What was seen of one pixel.

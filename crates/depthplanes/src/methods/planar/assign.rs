@@ -5,24 +5,14 @@
 //! against the planes of the tiles around it; where two planes meet at a crease, both explain the
 //! pixels near it, and the line where they meet, which is known exactly, decides.
 
-use super::field::Field;
+use super::block::{BLOCK, DU, DV, HALF, INSIDE, Local, MOST, Near, PIXELS, Pixels, STRETCH, are_inside};
+use super::crease::{Rule, is_near_both};
 use super::grid::{Grid, NONE};
-use super::near::{MOST, Near, STRETCH, are_inside};
-use super::planes::Planes;
-use super::rule::{Rule, is_near_both};
-use super::tiles::SIDE;
-use crate::group::vectorised;
-use crate::parallel::{NumberedRows, in_parts};
+use super::layout::Field;
+use super::region::Planes;
+use crate::util::parallel::{NumberedRows, in_parts};
+use crate::util::simd::vectorised;
 use std::ops::Range;
-
-/// How much further from its plane a pixel may lie where no other plane is near, as a factor.
-pub(super) const INSIDE: f64 = 2.0;
-/// Columns and rows of a block.
-pub(super) const BLOCK: usize = 2 * SIDE;
-/// Pixels of a block.
-pub(super) const PIXELS: usize = BLOCK * BLOCK;
-/// A block's pixels, row by row.
-pub(super) type Pixels<T> = [T; PIXELS];
 
 /// Labels every pixel, on as many threads. `grids`: the tiles, and the blocks with the region that their tiles agree on.
 pub(super) fn assign(field: &Field, grids: [&Grid; 2], planes: &Planes<'_>, threads: usize, image: &mut [u16]) {
@@ -123,17 +113,6 @@ struct Block {
     q: Pixels<f32>,
 }
 
-/// A plane that some pixels of a block lie on, about the block's middle.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Local {
-    pub(super) id: u32,
-    pub(super) a: f32,
-    pub(super) b: f32,
-    pub(super) c: f32,
-    /// Square of the largest distance of its pixels.
-    most: f32,
-}
-
 /// Memory for one block.
 #[derive(Debug)]
 struct Scratch {
@@ -150,22 +129,6 @@ impl Default for Scratch {
         let nothing = [[0.0; PIXELS]; MOST];
         Scratch { planes: [Local::default(); MOST], squares: nothing, beaten: nothing, labels: [0; PIXELS] }
     }
-}
-
-/// Half of a block's columns, up to its middle.
-pub(super) const HALF: f64 = (BLOCK - 1) as f64 / 2.0;
-/// Columns and rows of a block's pixels from its middle.
-pub(super) const DU: Pixels<f32> = offsets(1);
-pub(super) const DV: Pixels<f32> = offsets(BLOCK);
-
-const fn offsets(step: usize) -> Pixels<f32> {
-    let mut out = [0.0; PIXELS];
-    let mut at = 0;
-    while at < PIXELS {
-        out[at] = (at / step % BLOCK) as f32 - (BLOCK - 1) as f32 / 2.0;
-        at += 1;
-    }
-    out
 }
 
 impl Block {

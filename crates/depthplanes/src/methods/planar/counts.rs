@@ -4,72 +4,27 @@
 //! single precision. 1.234 m as a float is off by a fifty-millionth; through ten stages with limits that is enough to part
 //! another region here and there. Read back as 1,234 mm it gives what the map of millimetres gives, to the last bit.
 
-use super::Runner;
-use crate::camera::{Measure, Sensor};
+use super::enlarged::Source;
+use super::pipeline::Runner;
+use crate::camera::Measure;
 use crate::detection::{Detection, MapFit};
 use crate::error::Result;
 use crate::explanation::Explanation;
-use crate::group::reserve_to;
 use crate::map::{DepthView, Pixel};
-use crate::methods::Job;
+use crate::methods::method::{Job, MethodInfo};
+use crate::sensor::Sensor;
+use crate::util::memory::reserve_to;
 
 /// Units that depth is stored in, metres, the coarsest first: whole millimetres, TUM's fifths, tenths.
 const UNITS_M: [f64; 3] = [0.001, 0.0002, 0.0001];
 /// How far off a whole number a value may be, units in the last place: one rounding when it was made, one here.
 const PLACES: f64 = 2.0;
 
-impl Runner {
-    /// Finds planes in a map, of floats or not.
-    ///
-    /// # Errors
-    /// As [`crate::methods::Method::run`].
-    pub(super) fn planar_of_counts<T: Pixel>(
-        &mut self,
-        map: &DepthView<'_, T>,
-        job: &mut Job<'_>,
-        out: &mut Detection,
-    ) -> Result<()> {
-        let mut counts = std::mem::take(&mut self.counts);
-        let result = match counts.of(map, &job.sensor) {
-            Some((view, counted)) => {
-                let result = counted.on(job, |job| self.planar_of_source(&view, job, out));
-                counted.restore(out);
-                result
-            }
-            None => self.planar_of_source(map, job, out),
-        };
-        self.counts = counts;
-        result
-    }
-
-    /// Says why a pixel has a plane or none.
-    ///
-    /// # Errors
-    /// As [`crate::methods::Method::explain`].
-    pub(super) fn explain_of_counts<T: Pixel>(
-        &mut self,
-        map: &DepthView<'_, T>,
-        job: &mut Job<'_>,
-        at: [usize; 2],
-    ) -> Result<Explanation> {
-        let mut counts = std::mem::take(&mut self.counts);
-        let result = match counts.of(map, &job.sensor) {
-            Some((view, counted)) => {
-                let mut explanation = counted.on(job, |job| self.explain_of_source(&view, job, at));
-                explanation.iter_mut().for_each(|explanation| counted.restore_value(explanation));
-                explanation
-            }
-            None => self.explain_of_source(map, job, at),
-        };
-        self.counts = counts;
-        result
-    }
-}
-
 /// A map's values as counts; reuses its memory.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct Counts {
     pixels: Vec<u16>,
+    source: Source,
 }
 
 /// What a map counts.
@@ -82,43 +37,84 @@ struct Counted {
 }
 
 impl Counts {
-    /// The counts of a map of depth, 0 where nothing was measured; `None` for other maps, and where a value is no count.
-    fn of<T: Pixel>(&mut self, map: &DepthView<'_, T>, sensor: &Sensor) -> Option<(DepthView<'_, u16>, Counted)> {
-        let Measure::Depth { metres } = sensor.measure else { return None };
-        if T::IS_INTEGER {
-            return None;
-        }
-        let unit_m = UNITS_M.into_iter().find(|unit_m| self.count(map, metres / unit_m))?;
-        let counted = Counted {
-            per_unit: metres / unit_m,
-            sensor: Sensor { measure: Measure::Depth { metres: unit_m }, ..*sensor },
-        };
-        let view = DepthView::new(&self.pixels[..], map.width(), map.height()).ok()?;
-        Some((view, counted))
+    /// Finds planes in a map, of floats or not.
+    ///
+    /// # Errors
+    /// As [`crate::Detector::detect`].
+    pub(super) fn run<T: Pixel>(
+        &mut self,
+        runner: &mut Runner,
+        map: &DepthView<'_, T>,
+        job: &mut Job<'_>,
+        out: &mut Detection,
+    ) -> Result<()> {
+        let Counts { pixels, source } = self;
+        let Some((view, counted)) = counted(pixels, map, &job.sensor) else { return source.run(runner, map, job, out) };
+        let result = counted.on(job, |job| source.run(runner, &view, job, out));
+        counted.restore(out);
+        result
     }
 
-    /// Counts a map's values; whether all of them are counts.
-    fn count<T: Pixel>(&mut self, map: &DepthView<'_, T>, per_unit: f64) -> bool {
-        reserve_to(&mut self.pixels, map.area());
-        let validity = map.validity();
-        let is_count = |&value: &T, count: &mut u16| {
-            let exact = per_unit * value.into();
-            let whole = exact.round();
-            let off = (exact - whole).abs();
-            *count = if validity.holds(value) { whole as u16 } else { 0 };
-            let fits = (1.0..=f64::from(u16::MAX)).contains(&whole);
-            !validity.holds(value) | (fits & (off <= PLACES * f64::from(f32::EPSILON) * exact))
+    /// Says why a pixel has a plane or none.
+    ///
+    /// # Errors
+    /// As [`crate::Detector::explain`].
+    pub(super) fn explain<T: Pixel>(
+        &mut self,
+        runner: &mut Runner,
+        info: &'static MethodInfo,
+        map: &DepthView<'_, T>,
+        job: &mut Job<'_>,
+        at: [usize; 2],
+    ) -> Result<Explanation> {
+        let Counts { pixels, source } = self;
+        let Some((view, counted)) = counted(pixels, map, &job.sensor) else {
+            return source.explain(runner, info, map, job, at);
         };
-        for v in 0..map.height() {
-            let first = self.pixels.len();
-            self.pixels.resize(first + map.width(), 0);
-            let counts = &mut self.pixels[first..];
-            if !map.row(v).iter().zip(counts).fold(true, |all, (value, count)| all & is_count(value, count)) {
-                return false;
-            }
-        }
-        true
+        let mut explanation = counted.on(job, |job| source.explain(runner, info, &view, job, at));
+        explanation.iter_mut().for_each(|explanation| counted.restore_value(explanation));
+        explanation
     }
+}
+
+/// The counts of a map of depth, 0 where nothing was measured; `None` for other maps, and where a value is no count.
+fn counted<'a, T: Pixel>(
+    pixels: &'a mut Vec<u16>,
+    map: &DepthView<'_, T>,
+    sensor: &Sensor,
+) -> Option<(DepthView<'a, u16>, Counted)> {
+    let Measure::Depth { metres } = sensor.measure else { return None };
+    if T::IS_INTEGER {
+        return None;
+    }
+    let unit_m = UNITS_M.into_iter().find(|unit_m| count(pixels, map, metres / unit_m))?;
+    let counted =
+        Counted { per_unit: metres / unit_m, sensor: Sensor { measure: Measure::Depth { metres: unit_m }, ..*sensor } };
+    let view = DepthView::new(&pixels[..], map.width(), map.height()).ok()?;
+    Some((view, counted))
+}
+
+/// Counts a map's values; whether all of them are counts.
+fn count<T: Pixel>(pixels: &mut Vec<u16>, map: &DepthView<'_, T>, per_unit: f64) -> bool {
+    reserve_to(pixels, map.area());
+    let validity = map.validity();
+    let is_count = |&value: &T, count: &mut u16| {
+        let exact = per_unit * value.into();
+        let whole = exact.round();
+        let off = (exact - whole).abs();
+        *count = if validity.holds(value) { whole as u16 } else { 0 };
+        let fits = (1.0..=f64::from(u16::MAX)).contains(&whole);
+        !validity.holds(value) | (fits & (off <= PLACES * f64::from(f32::EPSILON) * exact))
+    };
+    for v in 0..map.height() {
+        let first = pixels.len();
+        pixels.resize(first + map.width(), 0);
+        let counts = &mut pixels[first..];
+        if !map.row(v).iter().zip(counts).fold(true, |all, (value, count)| all & is_count(value, count)) {
+            return false;
+        }
+    }
+    true
 }
 
 impl Counted {

@@ -6,22 +6,23 @@
 //! is around it, one quadratic runs on smoothly, while the crease of two planes leaves it far off: the best
 //! parabola through a roof misses its ridge by 3/16 of the height. And a small region continues a curved one.
 
-use super::bows::Bows;
-use super::grid::{Grid, NONE, Place, each_run};
-use super::grow::{Region, Regions};
+use super::curvature::{Border, Bows, Frame, add_run};
+use super::grid::{NONE, Place};
+use super::grow::Regions;
 use super::merge::Pair;
 use super::pyramid::Pyramid;
-use super::quadratic::{Frame, Sums};
-use super::switches::is_on;
+use super::region::{CellBox, Region};
 use super::thresholds::{
     Allowance, BOWED_ANGLE, GENTLE, GENTLE_LARGER, GENTLE_SHARE, GENTLE_SIZE, JOINT_GAIN, JOINT_MISS, LOOSE_GAIN,
     LOOSE_MISS, TURN,
 };
-use super::turns::Border;
-use crate::group::reserve_to;
 use crate::methods::rays::{Rays, dot};
 use crate::noise::NoiseModel;
-use crate::parallel::{Numbered, in_parts};
+use crate::statistics::quadratic::QuadraticSums;
+use crate::util::memory::reserve_to;
+use crate::util::parallel::{Numbered, in_parts};
+use crate::util::runs::each_run;
+use crate::util::switches::is_on;
 
 /// Fewest cells that a quadratic, six numbers, is fitted to.
 const ENOUGH: f64 = 12.0;
@@ -41,36 +42,6 @@ const CREASE: f64 = 0.03;
 const NEAR: f64 = 20.0;
 /// How far around, in tiles.
 const RING: usize = 1;
-/// Columns and rows of cells around a region.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct CellBox {
-    pub(super) first: [usize; 2],
-    pub(super) last: [usize; 2],
-}
-
-impl CellBox {
-    const NOTHING: CellBox = CellBox { first: [usize::MAX; 2], last: [0; 2] };
-
-    fn area(&self) -> usize {
-        (self.last[0] + 1).saturating_sub(self.first[0]) * (self.last[1] + 1).saturating_sub(self.first[1])
-    }
-
-    fn include(&mut self, columns: [usize; 2], row: usize) {
-        self.first = [self.first[0].min(columns[0]), self.first[1].min(row)];
-        self.last = [self.last[0].max(columns[1]), self.last[1].max(row)];
-    }
-
-    /// The box in cells that are `1 << level` times as large, with its own size added on every side.
-    fn widened(self, level: usize, grid: &Grid) -> CellBox {
-        let (first, last) = (self.first.map(|place| place >> level), self.last.map(|place| place >> level));
-        let reach = [0, 1].map(|axis| last[axis].saturating_sub(first[axis]) + 2);
-        let most = [grid.columns - 1, grid.rows - 1];
-        CellBox {
-            first: [0, 1].map(|axis| first[axis].saturating_sub(reach[axis])),
-            last: [0, 1].map(|axis| (last[axis] + reach[axis]).min(most[axis])),
-        }
-    }
-}
 
 /// Memory of this stage.
 #[derive(Debug, Default)]
@@ -277,7 +248,7 @@ impl Scene<'_> {
         let grid = &self.pyramid.grids[0];
         let CellBox { first, last } = self.boxes[small as usize];
         let frame = Frame::of(plane);
-        let mut sums = [Sums::default(); 2];
+        let mut sums = [QuadraticSums::default(); 2];
         for row in first[1].saturating_sub(RING)..(last[1] + RING + 1).min(grid.rows) {
             for column in first[0].saturating_sub(RING)..(last[0] + RING + 1).min(grid.columns) {
                 let at = row * grid.columns + column;
@@ -288,7 +259,7 @@ impl Scene<'_> {
                     let cell = grid.cell(Place { row: row as u32, column: column as u32 });
                     let off = cell.residual_about(plane.abc, plane.origin) / cell.n;
                     if is_own || off * off <= NEAR * NEAR * cell.variance {
-                        sums[usize::from(is_own)].add_run(grid, row, column..column + 1, plane, None, &frame);
+                        add_run(&mut sums[usize::from(is_own)], grid, row, column..column + 1, plane, None, &frame);
                     }
                 }
             }
@@ -303,13 +274,13 @@ impl Scene<'_> {
         let grid = &self.pyramid.grids[level];
         let around = self.boxes[small as usize].widened(level, grid);
         let frame = Frame::of(plane);
-        let mut sums = [Sums::default(); 2];
+        let mut sums = [QuadraticSums::default(); 2];
         for row in around.first[1]..=around.last[1] {
             let part = row * grid.columns + around.first[0]..row * grid.columns + around.last[0] + 1;
             each_run(&grid.region[part], around.first[0], |id, columns| {
                 if id == small || id == large {
                     let own = Some(&self.all[id as usize]);
-                    sums[usize::from(id == small)].add_run(grid, row, columns, plane, own, &frame);
+                    add_run(&mut sums[usize::from(id == small)], grid, row, columns, plane, own, &frame);
                 }
             });
         }
@@ -317,25 +288,16 @@ impl Scene<'_> {
     }
 }
 
-/// Finds the columns and rows of every region.
-pub(super) fn find_boxes(grid: &Grid, all: &[Region], boxes: &mut Vec<CellBox>) {
-    reserve_to(boxes, grid.len());
-    boxes.resize(all.len(), CellBox::NOTHING);
-    for (row, ids) in grid.region.chunks_exact(grid.columns).enumerate() {
-        each_run(ids, 0, |id, columns| boxes[id as usize].include([columns.start, columns.end - 1], row));
-    }
-}
-
 /// How well one quadratic explains a small region and its neighbours around it. First of each pair the
 /// neighbours, then the region.
 struct Joint {
-    sums: [Sums; 2],
+    sums: [QuadraticSums; 2],
     /// Squares of cell means about the quadratic, in variances, beyond what noise leaves.
     missed: [f64; 2],
 }
 
 impl Joint {
-    fn of(sums: [Sums; 2]) -> Self {
+    fn of(sums: [QuadraticSums; 2]) -> Self {
         let quadratic = sums[0].merge(&sums[1]).solve::<6>();
         let missed = [0, 1].map(|which: usize| sums[which].left_by(&quadratic) - sums[which].cells);
         Joint { sums, missed }
@@ -354,7 +316,7 @@ impl Joint {
     /// Whether it misses neither by more.
     fn is_close(&self, most: Allowance) -> bool {
         (0..2).all(|which| {
-            let Sums { pixels, smooth, .. } = self.sums[which];
+            let QuadraticSums { pixels, smooth, .. } = self.sums[which];
             self.missed[which] <= most.of(1.0, pixels, smooth)
         })
     }

@@ -5,18 +5,22 @@
 //! so that `min`, areas and places are those of the map that was given. Repeated pixels say no more than one: errors of
 //! planes are those of the source's pixels.
 
-use super::bent::curved_of;
-use super::{INFO, Planar, Runner, explain};
-use crate::camera::{Intrinsics, Sensor};
+use super::curved_regions::curved_of;
+use super::explain::explain;
+use super::parameters::Planar;
+use super::pipeline::Runner;
+use crate::camera::Intrinsics;
+use crate::components::{Grouper, Run};
 use crate::detection::Detection;
 use crate::error::Result;
 use crate::explanation::{Explanation, Finding, Suggestion, Verdict};
-use crate::group::{Grouper, Run, reserve_to};
 use crate::map::{DepthView, Pixel, Validity};
-use crate::methods::Job;
 use crate::methods::finish::{Finisher, STAGES, Wanted};
+use crate::methods::method::{Job, MethodInfo};
 use crate::methods::tries::Tries;
 use crate::noise::{Enlargement, EnlargementFinder};
+use crate::sensor::Sensor;
+use crate::util::memory::reserve_to;
 
 /// Fewest pixels of the source that are asked of a plane: those of a tile. `min` may be less than that.
 const TILE: u32 = 16;
@@ -34,42 +38,12 @@ pub(super) struct Source {
     pieces: Pieces,
 }
 
-impl Runner {
+impl Source {
     /// Finds planes in a map, enlarged or not.
     ///
     /// # Errors
-    /// As [`crate::methods::Method::run`].
-    pub(super) fn planar_of_source<T: Pixel>(
-        &mut self,
-        map: &DepthView<'_, T>,
-        job: &mut Job<'_>,
-        out: &mut Detection,
-    ) -> Result<()> {
-        let mut source = std::mem::take(&mut self.source);
-        let result = source.run(self, map, job, out);
-        self.source = source;
-        result
-    }
-
-    /// Says why a pixel has a plane or none; of an enlarged map it is the source pixel that is looked at.
-    ///
-    /// # Errors
-    /// As [`crate::methods::Method::explain`].
-    pub(super) fn explain_of_source<T: Pixel>(
-        &mut self,
-        map: &DepthView<'_, T>,
-        job: &mut Job<'_>,
-        at: [usize; 2],
-    ) -> Result<Explanation> {
-        let mut source = std::mem::take(&mut self.source);
-        let result = source.explain(self, map, job, at);
-        self.source = source;
-        result
-    }
-}
-
-impl Source {
-    fn run<T: Pixel>(
+    /// As [`crate::Detector::detect`].
+    pub(super) fn run<T: Pixel>(
         &mut self,
         runner: &mut Runner,
         map: &DepthView<'_, T>,
@@ -101,15 +75,20 @@ impl Source {
         Ok(())
     }
 
-    fn explain<T: Pixel>(
+    /// Says why a pixel has a plane or none; of an enlarged map it is the source pixel that is looked at.
+    ///
+    /// # Errors
+    /// As [`crate::Detector::explain`].
+    pub(super) fn explain<T: Pixel>(
         &mut self,
         runner: &mut Runner,
+        info: &'static MethodInfo,
         map: &DepthView<'_, T>,
         job: &mut Job<'_>,
         at: [usize; 2],
     ) -> Result<Explanation> {
         let Some(enlargement) = self.finder.find(map) else {
-            return explain::explain(runner, (*map).into(), job, at);
+            return explain(runner, info, (*map).into(), job, at);
         };
         let factor @ [x, y] = enlargement.factor;
         let place = [0, 1].map(|axis| {
@@ -118,7 +97,7 @@ impl Source {
         });
         let view = shrunk(map, &enlargement, &mut self.pixels)?;
         let mut explanation =
-            with_source(runner, job, &enlargement, |runner, job| explain::explain(runner, view.into(), job, place))?;
+            with_source(runner, job, &enlargement, |runner, job| explain(runner, info, view.into(), job, place))?;
         let mut out = Detection::default();
         self.run(runner, map, job, &mut out)?;
         let subject =
@@ -126,7 +105,7 @@ impl Source {
         let finding = Finding::new("map", subject, "the map was enlarged by repeating pixels");
         explanation.findings.insert(0, finding.with("columns", x, "").with("rows", y, ""));
         explanation.verdict = self.verdict(explanation.verdict, runner.params.min, factor, &out, at);
-        explanation.suggestions = retried(explanation.suggestions, runner, map, job.sensor, at, &out, factor);
+        explanation.suggestions = retried(explanation.suggestions, info, runner, map, job.sensor, at, &out, factor);
         explanation.at = at;
         Ok(explanation)
     }
@@ -157,6 +136,7 @@ impl Source {
 /// The suggestions for a source pixel that work on the whole map too.
 fn retried<T: Pixel>(
     suggestions: Vec<Suggestion>,
+    info: &'static MethodInfo,
     runner: &Runner,
     map: &DepthView<'_, T>,
     sensor: Sensor,
@@ -165,7 +145,7 @@ fn retried<T: Pixel>(
     [x, y]: [f64; 2],
 ) -> Vec<Suggestion> {
     let values = runner.params.values();
-    let tries = Tries { info: &INFO, values: &values, map: (*map).into(), sensor, at, planes: out.planes.len() };
+    let tries = Tries { info, values: &values, map: (*map).into(), sensor, at, planes: out.planes.len() };
     let of_whole = |(name, value): (&'static str, f64)| match name {
         "min" => (name, (value * x.floor() * y.floor()).floor()),
         _ => (name, value),

@@ -4,16 +4,17 @@
 //! and changes of parameters that were tried.
 
 use super::grow::fewest;
-use super::seen::{Fate, Seen, label_of};
-use super::{INFO, Moment, Planar, Runner};
+use super::parameters::Planar;
+use super::pipeline::{Moment, Runner};
+use super::trace::{Fate, Seen, label_of};
 use crate::detection::Detection;
 use crate::error::Result;
 use crate::explanation::{Explanation, Limit, Verdict};
 use crate::map::AnyView;
+use crate::map::with_view;
+use crate::methods::method::{Job, MethodInfo};
 use crate::methods::tries::{Change, Tries, rounded_down, rounded_up, smaller_min};
-use crate::methods::{Job, Method};
 use crate::noise::{NoiseModel, Space};
-use crate::with_view;
 
 /// Factors by which the noise or the inlier threshold may be raised for a suggestion; with more, anything is a plane.
 const FACTORS: [f64; 6] = [1.0, 1.2, 1.5, 2.0, 3.0, 4.0];
@@ -22,7 +23,17 @@ const SLIGHT: f64 = 1.5;
 /// Largest inlier threshold that is suggested: further off, a pixel is on something else.
 const MOST_INLIER_THRESHOLD: f64 = 12.0;
 
-pub(super) fn explain(runner: &mut Runner, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) -> Result<Explanation> {
+/// Says why a pixel has a plane or none. `info`: the row of the method, whose parameters are tried.
+///
+/// # Errors
+/// As [`crate::Detector::explain`].
+pub(super) fn explain(
+    runner: &mut Runner,
+    info: &'static MethodInfo,
+    map: AnyView<'_>,
+    job: &mut Job<'_>,
+    at: [usize; 2],
+) -> Result<Explanation> {
     let (mut seen, mut out) = (Seen::new(at, job.sensor), Detection::default());
     let mut watch = |moment: Moment, run: &Runner, noise: &NoiseModel| seen.look(moment, run, noise);
     with_view!(map, map => runner.planar(map, job, &mut out, &mut watch))?;
@@ -33,16 +44,16 @@ pub(super) fn explain(runner: &mut Runner, map: AnyView<'_>, job: &mut Job<'_>, 
     let mut findings = vec![seen.pixel(value)];
     findings.append(&mut seen.findings);
     let values = runner.params.values();
-    let tries = Tries { info: &INFO, values: &values, map, sensor: job.sensor, at, planes: out.planes.len() };
+    let tries = Tries { info, values: &values, map, sensor: job.sensor, at, planes: out.planes.len() };
     let suggestions = seen.changes(&verdict, runner).into_iter().filter_map(|changes| tries.first(changes)).collect();
-    Ok(Explanation { at, method: INFO.name, findings, verdict, suggestions })
+    Ok(Explanation { at, method: info.name, findings, verdict, suggestions })
 }
 
 /// Which of the conditions on whole planes drops that of a pixel: its area.
 fn dropped(run: &Runner, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) -> Result<Verdict> {
-    let mut method: Box<dyn Method> = Planar { min_area: 0.0, ..run.params }.try_into()?;
     let mut all = Detection::default();
-    method.run(map, job, &mut all)?;
+    let mut other = Runner { params: Planar { min_area: 0.0, ..run.params }, ..Runner::default() };
+    with_view!(map, map => other.planar(map, job, &mut all, &mut |_, _, _| ()))?;
     let plane = all.labels[at[1] * all.width + at[0]].checked_sub(1).map(|index| &all.planes[usize::from(index)]);
     let area = plane.and_then(|plane| plane.metric.as_ref()?.area_m2).unwrap_or(0.0);
     Ok(Verdict::Dropped { parameter: "min-area", value: area, limit: Limit::AtLeast(run.params.min_area) })

@@ -3,14 +3,14 @@
 //! A cell knows how its pixels lie, its least-squares plane and the squared residuals about it, which give the
 //! residuals about any other plane without a look at a pixel.
 
-use super::field::Field;
-use super::thresholds::JOIN;
-use crate::fit::Moments;
-use crate::parallel::Rows;
+use super::layout::Field;
+use super::thresholds::{FLAT, JOIN, limit};
+use crate::statistics::least_squares::Moments;
+use crate::util::parallel::Rows;
 use std::ops::Range;
 
 /// No region.
-pub(super) const NONE: u32 = u32::MAX;
+pub(super) use crate::util::runs::NONE;
 
 /// What is known of each cell: numbers of the same kind side by side.
 #[derive(Debug)]
@@ -222,6 +222,16 @@ impl Grid {
         }
     }
 
+    /// For each cell of a row, one of 2 x 2 of these, the region that its parts agree on.
+    pub(super) fn agreed(&self, row: usize, to: &mut [u32]) {
+        let above = self.region[2 * row * self.columns..].as_chunks::<2>().0;
+        let below = self.region[(2 * row + 1) * self.columns..].as_chunks::<2>().0;
+        for (to, (above, below)) in to.iter_mut().zip(above.iter().zip(below)) {
+            let id = above[0];
+            *to = if [above[1], below[0], below[1]] == [id; 3] { id } else { NONE };
+        }
+    }
+
     /// The four neighbours of a cell; at the map's edge itself in place of those that are missing.
     #[inline(always)]
     pub(super) fn neighbours(&self, place: Place) -> [Place; 4] {
@@ -241,36 +251,6 @@ impl Grid {
     }
 }
 
-/// Cells whose regions are compared together.
-const ABREAST: usize = 16;
-
-/// Calls `visit` for each run of a row's cells that have one region: the region, the columns.
-#[inline(always)]
-pub(super) fn each_run(row: &[u32], first: usize, mut visit: impl FnMut(u32, Range<usize>)) {
-    let mut start = 0;
-    let mut end_at = |end: usize| {
-        if row[start] != NONE {
-            visit(row[start], first + start..first + end);
-        }
-        start = end;
-    };
-    let Some(last) = row.len().checked_sub(1) else { return };
-    let (own, next) = (row[..last].as_chunks::<ABREAST>(), row[1..].as_chunks::<ABREAST>());
-    for (at, (own, next)) in (1..).step_by(ABREAST).zip(own.0.iter().zip(next.0)) {
-        let mut rest = u128::from_le_bytes(std::array::from_fn(|i| u8::from(own[i] != next[i])));
-        while rest != 0 {
-            end_at(at + rest.trailing_zeros() as usize / 8);
-            rest &= rest - 1;
-        }
-    }
-    for (at, (own, next)) in (last - own.1.len() + 1..).zip(own.1.iter().zip(next.1)) {
-        if own != next {
-            end_at(at);
-        }
-    }
-    end_at(row.len());
-}
-
 /// Where a cell lies in its grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Place {
@@ -282,13 +262,6 @@ impl Place {
     pub(super) fn new(column: usize, row: usize) -> Self {
         Place { row: row as u32, column: column as u32 }
     }
-}
-
-/// Largest sum of squared residuals of n pixels of one plane, in variances: the mean of chi-squared is n, its
-/// standard deviation sqrt(2 n). The noise level itself is known to about a fifth.
-#[inline(always)]
-pub(super) fn limit(n: f32, inlier_threshold: f32) -> f32 {
-    1.4 * (n + inlier_threshold * (2.0 * n).sqrt())
 }
 
 /// What is known of the cells of some rows, to be written.
@@ -325,31 +298,53 @@ impl<'a> Rows for GridRows<'a> {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::random::Random;
-
-    #[test]
-    fn runs_of_a_row_are_what_a_look_at_each_cell_finds() {
-        let mut random = Random::new(7);
-        for length in 0..80 {
-            let share = random.uniform();
-            let mut id = 0;
-            let mut next = |_| {
-                if random.uniform() < share {
-                    id = [NONE, 1, 2, 3][(random.uniform() * 4.0) as usize];
-                }
-                id
-            };
-            let row: Vec<u32> = (0..length).map(&mut next).collect();
-            let (mut cells, mut runs) = (vec![NONE; length], 0);
-            each_run(&row, 5, |id, columns| {
-                runs += 1;
-                columns.for_each(|column| cells[column - 5] = id);
-            });
-            let begins = (0..length).filter(|&at| row[at] != NONE && (at == 0 || row[at - 1] != row[at]));
-            assert_eq!((cells, runs), (row.clone(), begins.count()), "{row:?}");
+impl<const N: usize> Sums<[f32; N]> {
+    /// Sets a cell's numbers; one without a plane has no pixels.
+    #[inline(always)]
+    pub(super) fn put(&mut self, t: usize, numbers: [f32; 11], is_determined: bool) {
+        for (i, (place, number)) in self.each().into_iter().zip(numbers).enumerate() {
+            let nothing = if i == 9 { f32::INFINITY } else { 0.0 };
+            place[t] = if is_determined { number } else { nothing };
         }
     }
+}
+
+impl GridRows<'_> {
+    /// Writes the numbers of cells that lie side by side.
+    #[inline(always)]
+    pub(super) fn put<const N: usize>(&mut self, row: usize, column: usize, mut sums: Sums<[f32; N]>) {
+        let at = row * self.columns + column;
+        for (numbers, lanes) in self.sums.each().into_iter().zip(sums.each()) {
+            numbers[at..at + N].copy_from_slice(lanes);
+        }
+    }
+
+    /// Roughness from each cell's own residuals, and from those of its parts.
+    #[inline(always)]
+    pub(super) fn hold_against_noise(&mut self, parts: Option<&GridRows<'_>>, inlier_threshold: f32) {
+        let GridRows { sums: Sums { n, squares, strain, .. }, variance, smooth, roughness, columns, .. } = self;
+        let numbers = n.iter().zip(&**squares).zip(&**strain).zip(&**variance).zip(&**smooth);
+        for (((((&n, &squares), &strain), &variance), &smooth), roughness) in numbers.zip(&mut **roughness) {
+            let free = larger(n - 3.0, 1.0);
+            let bend = if parts.is_some() { FLAT.smooth as f32 * n * smooth } else { 0.0 };
+            let own = squares * n / (free * (limit(n, inlier_threshold) * variance + bend));
+            let most = FLAT.variances as f32 * variance + FLAT.smooth as f32 * n / 4.0 * smooth;
+            *roughness = larger(own, strain / most);
+        }
+        if let Some(parts) = parts {
+            for (row, roughness) in roughness.chunks_exact_mut(*columns).enumerate() {
+                let above = parts.roughness[2 * row * parts.columns..].as_chunks::<2>().0;
+                let below = parts.roughness[(2 * row + 1) * parts.columns..].as_chunks::<2>().0;
+                for ((roughness, above), below) in roughness.iter_mut().zip(above).zip(below) {
+                    *roughness = larger(*roughness, larger(larger(above[0], above[1]), larger(below[0], below[1])));
+                }
+            }
+        }
+    }
+}
+
+/// The larger; `b` if `a` is not a number.
+#[inline(always)]
+pub(super) fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }

@@ -4,25 +4,19 @@
 //! goes from the coarsest cells to the finest: large flat cells give regions whose planes are
 //! well known before the small cells along the borders are asked. A cell joins by its squared residuals
 //! about the region's plane, which its sums give without touching a pixel; among cells of one size, seeds are
-//! taken in order of their own scatter. A large map is grown over band by band ([`super::bands`]);
+//! taken in order of their own scatter. A large map is grown over band by band ([`super::layout`]);
 //! regions that a band's edge cuts are merged as any others are (stage "merge").
 
-use super::bands::in_bands;
 use super::grid::{Cell, Grid, NONE, Place};
-use super::pyramid::{LEVELS, Pyramid, hand_down};
-use super::settle::Settling;
-use super::tiles::{LANES, SIDE};
-use crate::fit::Moments;
-use crate::group::{reserve_to, vectorised};
+use super::layout::{LANES, LEVELS, SIDE, in_bands};
+use super::pyramid::{Pyramid, hand_down};
+use super::region::Region;
+use crate::util::memory::reserve_to;
+use crate::util::simd::vectorised;
 use std::array::from_fn;
 use std::mem::take;
 use std::ops::Range;
 
-/// Below so many pixels a region's plane is too uncertain to be held against a neighbour: the cell is
-/// tested against the plane of both.
-const SMALL: f64 = 144.0;
-/// A plane is fitted anew when its region has grown by this factor.
-const REFIT: f64 = 1.125;
 /// Fewest pixels of a tile that starts a region, as a share of all.
 const OF_TILE: f32 = 0.5;
 /// Fewest pixels of a larger cell that starts or joins one: half of a cell may lie in a gap that it would reach over.
@@ -30,140 +24,12 @@ const OF_CELL: f32 = 0.75;
 /// Cells of a row that are looked at together; a row has a multiple of them.
 const ABREAST: usize = LANES;
 
-/// Cells on one plane.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Region {
-    /// Sums about `origin`.
-    pub(super) sums: Moments,
-    /// (u, v, q) that sums and plane stand about.
-    pub(super) origin: [f64; 3],
-    /// The least-squares plane about `origin`.
-    pub(super) abc: [f64; 3],
-    /// Mean (u, v) of its pixels.
-    pub(super) middle: [f64; 2],
-    /// Squared residuals about it.
-    pub(super) squares: f64,
-    /// Sum of the pixels' variances.
-    pub(super) variance: f64,
-    /// Sum of the variances of the smooth part.
-    pub(super) smooth: f64,
-    /// Whether it is a facet of a curved surface.
-    pub(super) is_curved: bool,
-    /// Pixels at which its plane was fitted.
-    fitted_at: f64,
-}
-
-impl Region {
-    pub(super) fn of(cell: &Cell) -> Self {
-        let mut region = Region {
-            sums: cell.moments(cell.origin()),
-            origin: cell.origin(),
-            abc: [0.0; 3],
-            middle: [0.0; 2],
-            squares: 0.0,
-            variance: cell.variance * cell.n,
-            smooth: cell.smooth * cell.n,
-            is_curved: false,
-            fitted_at: 0.0,
-        };
-        region.refit();
-        region
-    }
-
-    /// The plane's q at a pixel.
-    #[inline(always)]
-    pub(super) fn at(&self, u: f64, v: f64) -> f64 {
-        let [u0, v0, q0] = self.origin;
-        self.abc[0] * (u - u0) + self.abc[1] * (v - v0) + self.abc[2] + q0
-    }
-
-    /// How much q changes from one pixel to the next, as a share of what q in the middle is from that at infinite range.
-    pub(super) fn steepness(&self, at_infinity: f64) -> f64 {
-        let [u, v] = self.middle;
-        self.abc[0].hypot(self.abc[1]) / (self.at(u, v) - at_infinity).abs()
-    }
-
-    /// Its squared residuals as a multiple of what the noise leaves. A wall that a camera bows lies off its plane by more
-    /// than any small patch of it shows.
-    #[inline(always)]
-    pub(super) fn excess(&self) -> f64 {
-        self.squares / (self.variance + self.smooth)
-    }
-
-    /// Fits its plane to its sums.
-    pub(super) fn refit(&mut self) {
-        if let Some(fit) = self.sums.fit() {
-            self.abc = fit.abc;
-            self.squares = fit.rms * fit.rms * fit.n;
-        }
-        let [u, v, _] = self.origin;
-        self.middle = [u + self.sums.u / self.sums.n, v + self.sums.v / self.sums.n];
-        self.fitted_at = self.sums.n;
-    }
-
-    /// Takes a cell's pixels in; the plane stays as it is.
-    #[inline(always)]
-    pub(super) fn take(&mut self, cell: &Cell) {
-        self.sums.merge(&cell.moments(self.origin));
-        self.variance += cell.variance * cell.n;
-        self.smooth += cell.smooth * cell.n;
-    }
-
-    /// Gives a cell's pixels away; the plane stays as it is.
-    pub(super) fn give(&mut self, cell: &Cell) {
-        self.sums.remove(&cell.moments(self.origin));
-        self.variance -= cell.variance * cell.n;
-        self.smooth -= cell.smooth * cell.n;
-    }
-
-    /// Takes a cell in if its pixels lie on the plane.
-    #[inline(always)]
-    fn takes(&mut self, cell: &Cell, only_flat: bool, inlier_threshold: f64) -> bool {
-        let most = if only_flat { cell.most_joining() } else { cell.most_squares(inlier_threshold) };
-        if self.sums.n < SMALL {
-            return self.takes_anew(cell, most);
-        }
-        if cell.squares_about(self.abc, self.origin) > most {
-            return false;
-        }
-        self.take(cell);
-        if self.sums.n >= REFIT * self.fitted_at
-            && let Some(fit) = self.sums.fit()
-        {
-            self.aim(fit.abc);
-        }
-        true
-    }
-
-    /// Takes a cell in if its pixels lie on the plane of both.
-    #[inline(always)]
-    fn takes_anew(&mut self, cell: &Cell, most: f64) -> bool {
-        let mut both = self.sums;
-        both.merge(&cell.moments(self.origin));
-        let Some(fit) = both.fit() else { return false };
-        let takes = cell.squares_about(fit.abc, self.origin) <= most;
-        if takes {
-            self.take(cell);
-            self.aim(fit.abc);
-        }
-        takes
-    }
-
-    /// Sets its plane alone: while it grows nobody asks for what else [`Region::refit`] finds.
-    #[inline(always)]
-    fn aim(&mut self, abc: [f64; 3]) {
-        self.abc = abc;
-        self.fitted_at = self.sums.n;
-    }
-}
-
 /// The regions of a map; reuses its memory.
 #[derive(Debug, Default)]
 pub(super) struct Regions {
     pub(super) all: Vec<Region>,
     /// For each band what grows in it.
     growths: Vec<Growth>,
-    pub(super) settling: Settling,
 }
 
 /// The regions of a band.

@@ -4,15 +4,18 @@
 //! by side with the place where they touch.
 
 use super::grid::{Grid, NONE};
-use super::grow::{Region, Regions};
-use super::switches::is_on;
+use super::grow::Regions;
+use super::region::Region;
 use super::thresholds::{BOWED_ANGLE, BOWED_EXCESS, BOWED_MERGE, BOWED_STEP, MERGE, STEP_NOISE};
 use crate::error::{Error, Result};
-use crate::fit::Moments;
-use crate::group::{reserve_to, vectorised};
+use crate::limits::MAX_PLANES;
 use crate::methods::rays::{Rays, dot};
-use crate::parallel::{in_parts, in_rows};
-use crate::select::MAX_PLANES;
+use crate::statistics::least_squares::Moments;
+use crate::util::memory::reserve_to;
+use crate::util::parallel::{in_parts, in_rows};
+use crate::util::simd::vectorised;
+use crate::util::switches::is_on;
+use crate::util::union_find::find;
 use std::ops::Range;
 
 /// Two regions with tiles side by side, or with one tile of no region between.
@@ -24,7 +27,7 @@ pub(super) struct Pair {
     pub(super) contacts: f64,
     /// Sum over them of (u, v).
     at: [f64; 2],
-    /// What merging costs ([`bend`]), infinite if they are not one; NaN if it is not known.
+    /// What merging costs ([`merge_cost`]), infinite if they are not one; NaN if it is not known.
     cost: f64,
 }
 
@@ -118,11 +121,8 @@ impl Merger {
     }
 
     /// The region that one has become part of by now, or itself.
-    pub(super) fn root(&self, mut id: u32) -> u32 {
-        while self.into[id as usize] != id {
-            id = self.into[id as usize];
-        }
-        id
+    pub(super) fn root(&self, id: u32) -> u32 {
+        find(&self.into, id)
     }
 
     /// Lists the pairs of regions side by side, on as many threads.
@@ -288,7 +288,7 @@ fn weigh(pairs: &mut [Pair], all: &[Region], rays: &Rays, threads: usize) {
     let weigh = |pairs: &mut [Pair]| {
         for pair in pairs {
             let [a, b] = pair.ids.map(|id| &all[id as usize]);
-            let cost = bend(a, b);
+            let cost = merge_cost(a, b);
             let bowed = BOWED_MERGE * a.excess().max(b.excess()).clamp(1.0, BOWED_EXCESS);
             let is_one = cost <= 1.0 || (cost <= bowed && is_on("bowed-merge") && goes_on(a, b, pair.middle(), rays));
             pair.cost = if is_one { cost } else { f64::INFINITY };
@@ -316,23 +316,6 @@ fn unite(pairs: &mut Vec<Pair>) {
     });
 }
 
-impl Region {
-    /// Takes another region's pixels in.
-    pub(super) fn absorb(&mut self, other: &Region) {
-        self.sums.merge(&self.sums_of(other));
-        self.variance += other.variance;
-        self.smooth += other.smooth;
-        self.refit();
-    }
-
-    /// Sums of another region about this one's origin.
-    #[inline(always)]
-    pub(super) fn sums_of(&self, other: &Region) -> Moments {
-        let [u, v, q] = self.origin;
-        other.sums.moved([other.origin[0] - u, other.origin[1] - v, other.origin[2] - q])
-    }
-}
-
 /// Whether two planes meet without a step and turn by little.
 fn goes_on(a: &Region, b: &Region, [u, v]: [f64; 2], rays: &Rays) -> bool {
     let limit = |region: &Region| STEP_NOISE.of(1.0, region.variance, region.smooth) / region.sums.n;
@@ -348,7 +331,7 @@ fn goes_on(a: &Region, b: &Region, [u, v]: [f64; 2], rays: &Rays) -> bool {
 
 /// What a joint plane adds to the squares of the region that it suits less, as a multiple of what may be ([`MERGE`]).
 #[inline(always)]
-pub(super) fn bend(a: &Region, b: &Region) -> f64 {
+pub(super) fn merge_cost(a: &Region, b: &Region) -> f64 {
     let theirs = a.sums_of(b);
     let mut both = a.sums;
     both.merge(&theirs);

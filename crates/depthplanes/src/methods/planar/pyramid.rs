@@ -3,20 +3,17 @@
 //! In: a map. Out: the map in q, and a pyramid of grids: tiles of [`SIDE`] x [`SIDE`] pixels, cells of 2 x 2 tiles, and
 //! cells of 4 x 4, each with its own plane.
 
-use super::bands::{cut, finer};
-use super::field::{Field, ROWS, fill_row};
 use super::grid::{Grid, GridRows, NONE};
-use super::planes::of_slope;
-use super::tiles::{HALVES, Pixels, SIDE, sum_cells, sum_tiles};
-use crate::group::vectorised;
+use super::layout::{Field, LEVELS, ROWS, SIDE, cut, fill_row, finer};
+use super::region::of_slope;
+use super::tiles::{HALVES, Pixels, sum_cells, sum_tiles};
 use crate::map::{DepthView, Pixel};
+use crate::noise::scales::{self, Scales};
 use crate::noise::{NoiseModel, Space};
-use crate::parallel::{NumberedRows, Rows, in_parts};
+use crate::util::parallel::{NumberedRows, Rows, in_parts};
+use crate::util::simd::vectorised;
 use std::array::from_fn;
 use std::ops::Range;
-
-/// Grids of a pyramid. The sides of their cells double.
-pub(super) const LEVELS: usize = 3;
 
 /// The grids of a map, the finest first.
 #[derive(Debug)]
@@ -67,6 +64,31 @@ impl Pyramid {
         }
     }
 
+    /// Shows the map's errors at several scales: second differences of neighbouring cells' means, and tiles' residuals about
+    /// their own planes.
+    pub(super) fn show(&self, scales: &mut Scales) {
+        scales.prepare();
+        let tiles = &self.grids[0];
+        let of_tile = |(filled, pixels), &n: &f32| (filled + u32::from(n > 0.0), pixels + n as u32);
+        let (filled, pixels) = vectorised(
+            #[inline(always)]
+            || tiles.sums.n.iter().fold((0, 0), of_tile),
+        );
+        let usual = (f64::from(pixels) / f64::from(filled.max(1))) as f32;
+        for (level, grid) in self.grids.iter().enumerate() {
+            let sums = &grid.sums;
+            scales.look_at(
+                scales::Cells { level, columns: grid.columns, rows: grid.rows, usual },
+                #[inline(always)]
+                |at: usize| scales::Cell {
+                    n: sums.n[at],
+                    abc: [sums.a[at], sums.b[at], sums.c[at]],
+                    squares: sums.squares[at],
+                },
+            );
+        }
+    }
+
     /// A band's rows of the cells of a level.
     pub(super) fn rows_of(&self, band: &Range<usize>, level: usize) -> Range<usize> {
         finer(band, 1 << (LEVELS - 1 - level))
@@ -89,18 +111,6 @@ impl Pyramid {
             let hand_up = |cells: NumberedRows<'_, u32>| cells.each().for_each(|(row, to)| parts.agreed(row, to));
             let cells = NumberedRows { first: 0, per_row: grid.columns, all: &mut grid.region[..] };
             in_parts(threads, cells, hand_up, |(), ()| ());
-        }
-    }
-}
-
-impl Grid {
-    /// For each cell of a row, one of 2 x 2 of these, the region that its parts agree on.
-    fn agreed(&self, row: usize, to: &mut [u32]) {
-        let above = self.region[2 * row * self.columns..].as_chunks::<2>().0;
-        let below = self.region[(2 * row + 1) * self.columns..].as_chunks::<2>().0;
-        for (to, (above, below)) in to.iter_mut().zip(above.iter().zip(below)) {
-            let id = above[0];
-            *to = if [above[1], below[0], below[1]] == [id; 3] { id } else { NONE };
         }
     }
 }

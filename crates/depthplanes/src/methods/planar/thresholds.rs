@@ -92,3 +92,10 @@ pub(super) const GENTLE_SHARE: f64 = 0.4;
 pub(super) const GENTLE_SIZE: f64 = 0.25;
 /// One neighbour that has so many times the pixels is enough: the facet is a bump of it.
 pub(super) const GENTLE_LARGER: f64 = 2.0;
+
+/// Largest sum of squared residuals of n pixels of one plane, in variances: the mean of chi-squared is n, its
+/// standard deviation sqrt(2 n). The noise level itself is known to about a fifth.
+#[inline(always)]
+pub(super) fn limit(n: f32, inlier_threshold: f32) -> f32 {
+    1.4 * (n + inlier_threshold * (2.0 * n).sqrt())
+}

@@ -3,14 +3,9 @@
 //! In: rows of the map in q, or of cells. Out: the sums and planes of the tiles, or of the cells of 2 x 2, in them. All cells
 //! of a row are computed side by side, so the loops are plain arithmetic that the compiler turns into vectors.
 
-use super::grid::{GridRows, Sums, limit};
-use super::thresholds::FLAT;
+use super::grid::{GridRows, Sums, larger};
+use super::layout::{LANES, SIDE};
 
-/// Columns and rows of a tile. The smallest plane has to hold a few; a tile's own plane should still
-/// mean something under noise. Of 4, 5, 6 and 8, 4 was the best on ABW and on made-up rooms.
-pub(super) const SIDE: usize = 4;
-/// Cells that are computed at a time; a row of any size of cells has a multiple of them.
-pub(super) const LANES: usize = 8;
 /// Tiles that are, which rows have more of.
 const ABREAST: usize = 2 * LANES;
 
@@ -250,57 +245,6 @@ fn pairs(numbers: &[f32], first: usize) -> &[f32; 2 * LANES] {
 #[inline(always)]
 fn own(squares: f32) -> f32 {
     if squares.is_finite() { squares } else { 0.0 }
-}
-
-impl<const N: usize> Sums<[f32; N]> {
-    /// Sets a cell's numbers; one without a plane has no pixels.
-    #[inline(always)]
-    fn put(&mut self, t: usize, numbers: [f32; 11], is_determined: bool) {
-        for (i, (place, number)) in self.each().into_iter().zip(numbers).enumerate() {
-            let nothing = if i == 9 { f32::INFINITY } else { 0.0 };
-            place[t] = if is_determined { number } else { nothing };
-        }
-    }
-}
-
-impl GridRows<'_> {
-    /// Writes the numbers of cells that lie side by side.
-    #[inline(always)]
-    fn put<const N: usize>(&mut self, row: usize, column: usize, mut sums: Sums<[f32; N]>) {
-        let at = row * self.columns + column;
-        for (numbers, lanes) in self.sums.each().into_iter().zip(sums.each()) {
-            numbers[at..at + N].copy_from_slice(lanes);
-        }
-    }
-
-    /// Roughness from each cell's own residuals, and from those of its parts.
-    #[inline(always)]
-    pub(super) fn hold_against_noise(&mut self, parts: Option<&GridRows<'_>>, inlier_threshold: f32) {
-        let GridRows { sums: Sums { n, squares, strain, .. }, variance, smooth, roughness, columns, .. } = self;
-        let numbers = n.iter().zip(&**squares).zip(&**strain).zip(&**variance).zip(&**smooth);
-        for (((((&n, &squares), &strain), &variance), &smooth), roughness) in numbers.zip(&mut **roughness) {
-            let free = larger(n - 3.0, 1.0);
-            let bend = if parts.is_some() { FLAT.smooth as f32 * n * smooth } else { 0.0 };
-            let own = squares * n / (free * (limit(n, inlier_threshold) * variance + bend));
-            let most = FLAT.variances as f32 * variance + FLAT.smooth as f32 * n / 4.0 * smooth;
-            *roughness = larger(own, strain / most);
-        }
-        if let Some(parts) = parts {
-            for (row, roughness) in roughness.chunks_exact_mut(*columns).enumerate() {
-                let above = parts.roughness[2 * row * parts.columns..].as_chunks::<2>().0;
-                let below = parts.roughness[(2 * row + 1) * parts.columns..].as_chunks::<2>().0;
-                for ((roughness, above), below) in roughness.iter_mut().zip(above).zip(below) {
-                    *roughness = larger(*roughness, larger(larger(above[0], above[1]), larger(below[0], below[1])));
-                }
-            }
-        }
-    }
-}
-
-/// The larger; `b` if `a` is not a number.
-#[inline(always)]
-fn larger(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }
 
 #[inline(always)]

@@ -1,5 +1,5 @@
 use super::*;
-use crate::random::Random;
+use crate::util::random::Random;
 
 /// A room on 64 x 48 pixels, millimetres, with that much noise.
 fn source(noise_mm: f64) -> Vec<u16> {

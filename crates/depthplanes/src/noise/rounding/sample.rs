@@ -5,8 +5,8 @@
 //! once in every column.
 
 use super::SHIFT;
-use crate::group::reserve_to;
 use crate::map::{DepthView, Pixel};
+use crate::util::memory::reserve_to;
 
 /// Pixels that are looked at, about.
 const PIXELS: usize = 16_000;

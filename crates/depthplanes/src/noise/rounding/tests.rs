@@ -1,5 +1,5 @@
 use super::*;
-use crate::random::Random;
+use crate::util::random::Random;
 
 const WIDTH: usize = 320;
 const HEIGHT: usize = 240;

@@ -4,8 +4,8 @@
 //! before any other error.
 
 use super::Exposure;
-use crate::random::Random;
 use crate::scene::pose::KINECT_FOCAL_PX;
+use crate::util::random::Random;
 
 /// Standard deviation of the shift of edges, in pixels of the sensor's own picture (the lateral
 /// noise of Nguyen, Izadi and Lovell 2012).

@@ -21,8 +21,8 @@
 //! The table is what `tests/sensors.rs` holds the made-up frames to, within a quarter.
 
 use super::field::Field;
-use crate::random::Random;
 use crate::scene::pose::{Camera, KINECT_FOCAL_PX};
+use crate::util::random::Random;
 
 /// Distance of the nodes of the small and the large patches, pixels of a picture of 640 x 480. Our
 /// choice: of 4, 8, 16, 32 and 64 px these two suit the rows of the table best.

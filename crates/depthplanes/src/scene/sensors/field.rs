@@ -4,7 +4,7 @@
 //! on every platform. Gaussian draws on a lattice are blended by cubic B-splines: polynomials alone,
 //! and unlike linear blends as strong between the nodes as on them (within a tenth of the variance).
 
-use crate::random::Random;
+use crate::util::random::Random;
 
 /// The inverse of the mean of the sum of a cubic B-spline's four squared weights, 151/315: along
 /// two axes it brings the blend of nodes back to a standard deviation of 1.

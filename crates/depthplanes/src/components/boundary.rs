@@ -1,0 +1,117 @@
+//! Where a label image changes.
+//!
+//! In: a label image, 0 = none. Out: the pixels without a region beside one that has one, and the neighbours that have different
+//! ones. Most pixels are neither, so they are found as bits, 64 to a word: column u of a row is bit u % 64 of its word
+//! u / 64. What follows looks at these pixels alone.
+
+use super::isa::RowMasks;
+use super::kernels::best;
+use super::link_rule::LinkRule;
+use crate::map::Validity;
+use crate::util::bits::{behind, bits};
+use crate::util::parallel::{Rows, in_parts};
+use std::ops::Range;
+
+/// Pixels of a word.
+const WORD: usize = u64::BITS as usize;
+
+/// Masks of a region image; reuses its memory.
+#[derive(Debug, Default)]
+pub(crate) struct Boundary {
+    /// Words of a row.
+    words: usize,
+    /// Pixels with a region; a row without any stands before the first and after the last.
+    labelled: Vec<u64>,
+    /// Pixels with the label of their left neighbour, and of their upper one.
+    like_left: Vec<u64>,
+    like_up: Vec<u64>,
+}
+
+impl Boundary {
+    /// Looks at an image of `stride` columns, a multiple of [`WORD`], on as many threads.
+    pub(crate) fn find(&mut self, image: &[u16], stride: usize, threads: usize) {
+        let (words, count) = (stride / WORD, image.len() / WORD);
+        let Boundary { labelled, like_left, like_up, .. } = self;
+        labelled.clear();
+        labelled.resize(count + 2 * words, 0);
+        like_left.resize(count, 0);
+        like_up.resize(count, 0);
+        let labelled = &mut labelled[words..][..count];
+        let rule = LinkRule::new(Validity::default(), 0.0).expect("theta is 0");
+        let find = |part: Part<'_>| part.find(image, stride, &rule);
+        in_parts(threads, Part { first: 0, words, labelled, like_left, like_up }, find, |(), ()| ());
+        self.words = words;
+    }
+
+    /// Calls `visit` with (u, v) of each pixel of some rows without a region that has a neighbour with one, row by row.
+    pub(crate) fn each_open(&self, rows: Range<usize>, mut visit: impl FnMut([usize; 2])) {
+        let words = self.words;
+        for v in rows {
+            let [above, here, below] = [v, v + 1, v + 2].map(|row| &self.labelled[row * words..][..words]);
+            for word in 0..words {
+                let from_right = here.get(word + 1).map_or(0, |next| next << (WORD - 1));
+                let beside = above[word] | below[word] | behind(here, word) | here[word] >> 1 | from_right;
+                bits(!here[word] & beside).for_each(|bit| visit([word * WORD + bit, v]));
+            }
+        }
+    }
+
+    /// Rows of the image.
+    pub(crate) fn rows(&self) -> usize {
+        self.like_left.len() / self.words
+    }
+
+    /// Calls `visit` with the labels of each two neighbours of some rows, or one row above, that have different ones.
+    pub(crate) fn each(&self, rows: Range<usize>, image: &[u16], mut visit: impl FnMut(u16, u16)) {
+        let (words, stride) = (self.words, self.words * WORD);
+        for v in rows {
+            let [like_left, like_up] = [&self.like_left, &self.like_up].map(|masks| &masks[v * words..][..words]);
+            let [above, here] = [v, v + 1].map(|row| &self.labelled[row * words..][..words]);
+            for word in 0..words {
+                let mut visit_all = |mask: u64, off: usize| {
+                    let first = v * stride + word * WORD;
+                    bits(mask).map(|bit| first + bit).for_each(|pixel| visit(image[pixel], image[pixel - off]));
+                };
+                visit_all(here[word] & behind(here, word) & !like_left[word], 1);
+                visit_all(here[word] & above[word] & !like_up[word], stride);
+            }
+        }
+    }
+}
+
+/// The masks of some rows, to be written.
+struct Part<'a> {
+    /// The image's row in the first.
+    first: usize,
+    words: usize,
+    labelled: &'a mut [u64],
+    like_left: &'a mut [u64],
+    like_up: &'a mut [u64],
+}
+
+impl Rows for Part<'_> {
+    fn rows(&self) -> usize {
+        self.labelled.len() / self.words
+    }
+
+    fn cut(self, rows: usize) -> (Self, Self) {
+        let Part { first, words, labelled, like_left, like_up } = self;
+        let [a, b, c] = [labelled, like_left, like_up].map(|masks| masks.split_at_mut(rows * words));
+        (
+            Part { first, words, labelled: a.0, like_left: b.0, like_up: c.0 },
+            Part { first: first + rows, words, labelled: a.1, like_left: b.1, like_up: c.1 },
+        )
+    }
+}
+
+impl Part<'_> {
+    fn find(self, image: &[u16], stride: usize, rule: &LinkRule<u16>) {
+        let Part { first, words, labelled, like_left, like_up } = self;
+        let kernel = best();
+        let row = |v: usize| &image[v * stride..][..stride];
+        let likes = like_left.chunks_exact_mut(words).zip(like_up.chunks_exact_mut(words));
+        for (v, (valid, (close_left, close_up))) in (first..).zip(labelled.chunks_exact_mut(words).zip(likes)) {
+            kernel.masks(row(v), row(v.saturating_sub(1)), rule, RowMasks { valid, close_left, close_up });
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! One frame from a map to planes: the paper's section 3, stage by stage.
+
+use super::enhance::{Enhancer, Fillable};
+use super::parameters::Ngaf;
+use crate::components::selection::Selection;
+use crate::components::{Compiles, Grouper, Groups, LinkRule};
+use crate::detection::Detection;
+use crate::error::Result;
+use crate::map::{DepthView, Pixel};
+use crate::methods::method::Job;
+use crate::methods::records::Records;
+use crate::noise::NoiseModel;
+use crate::statistics::{Describer, Seen, Tally};
+
+/// The method with its memory.
+#[derive(Default)]
+pub(super) struct Runner {
+    pub(super) params: Ngaf,
+    enhancer: Enhancer,
+    grouper: Grouper,
+    selection: Selection,
+    describer: Describer,
+}
+
+impl Runner {
+    /// The method with these parameters.
+    pub(super) fn new(params: Ngaf) -> Self {
+        let mut runner = Runner { params, ..Runner::default() };
+        runner.grouper.leave_out_singles(params.min >= 1);
+        runner
+    }
+}
+
+/// Told of a run as it goes on.
+pub(super) trait Watch {
+    /// Large groups are selected from the map as it was grouped.
+    fn selected<T: Pixel>(&mut self, map: &DepthView<'_, T>, groups: &Groups, selection: &Selection);
+
+    /// They are described; our own conditions have dropped none yet.
+    fn described(&mut self, tallies: &[Tally]);
+}
+
+/// Nobody looks.
+impl Watch for () {
+    fn selected<T: Pixel>(&mut self, _: &DepthView<'_, T>, _: &Groups, _: &Selection) {}
+
+    fn described(&mut self, _: &[Tally]) {}
+}
+
+impl Runner {
+    /// Section 3, stage by stage.
+    pub(super) fn ngaf<T: Compiles + Fillable>(
+        &mut self,
+        map: DepthView<'_, T>,
+        job: &mut Job<'_>,
+        out: &mut Detection,
+        watch: &mut impl Watch,
+    ) -> Result<()> {
+        let Runner { params, enhancer, grouper, selection, describer } = self;
+        let (map, filled_pixels) = match params.window {
+            0 => (map, 0),
+            window => enhancer.enhance(&map, window, params.passes)?, // section 3b
+        };
+        job.done("enhance");
+        let rule = LinkRule::new(map.validity(), params.theta)?;
+        let groups = grouper.group(&map, &rule, job.threads); // section 3c
+        job.done("group");
+        selection.select(groups, params.min)?; // section 3d
+        job.done("select");
+        watch.selected(&map, groups, selection);
+        let mut runs = selection.runs(groups);
+        describer.tally(&map, runs, params.margin, &job.sensor, job.threads);
+        watch.described(describer.tallies());
+        if params.has_conditions() {
+            selection.retain(groups, |index| params.accepts(&describer.tallies()[index]));
+            describer.retain(|tally| params.accepts(tally));
+            runs = selection.runs(groups);
+        }
+        let valid = groups.valid_pixels();
+        let noise = job
+            .sensor
+            .noise
+            .and_then(|noise| NoiseModel::new(job.sensor.measure, noise, if T::IS_INTEGER { 1.0 } else { 0.0 }));
+        let seen = Seen { sensor: &job.sensor, noise: noise.as_ref(), valid_pixels: valid };
+        describer.describe(&map, runs, &seen, job.threads, &mut out.planes);
+        let mut records =
+            Records { map: &map, groups, margin: params.margin, seen, threads: job.threads, selection, describer };
+        records.join(job.joiner.as_deref_mut(), out);
+        job.done("fit");
+        selection.paint(groups, &mut out.labels);
+        (out.width, out.height) = (map.width(), map.height());
+        (out.valid_pixels, out.filled_pixels) = (valid - filled_pixels, filled_pixels);
+        job.done("label");
+        Ok(())
+    }
+}

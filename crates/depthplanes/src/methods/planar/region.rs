@@ -1,0 +1,281 @@
+//! A region of cells on one plane, and how far from its plane the noise lets a pixel lie.
+
+use super::grid::{Cell, Grid};
+use super::layout::Field;
+use super::thresholds::EDGE_ON;
+use crate::camera::Measure;
+use crate::error::Result;
+use crate::map::DepthView;
+use crate::noise::{NoiseModel, Space};
+use crate::statistics::least_squares::Moments;
+use crate::util::memory::reserve_to;
+use crate::util::runs::each_run;
+use crate::util::switches::is_on;
+
+/// Below so many pixels a region's plane is too uncertain to be held against a neighbour: the cell is
+/// tested against the plane of both.
+const SMALL: f64 = 144.0;
+/// A plane is fitted anew when its region has grown by this factor.
+const REFIT: f64 = 1.125;
+
+/// Cells on one plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Region {
+    /// Sums about `origin`.
+    pub(super) sums: Moments,
+    /// (u, v, q) that sums and plane stand about.
+    pub(super) origin: [f64; 3],
+    /// The least-squares plane about `origin`.
+    pub(super) abc: [f64; 3],
+    /// Mean (u, v) of its pixels.
+    pub(super) middle: [f64; 2],
+    /// Squared residuals about it.
+    pub(super) squares: f64,
+    /// Sum of the pixels' variances.
+    pub(super) variance: f64,
+    /// Sum of the variances of the smooth part.
+    pub(super) smooth: f64,
+    /// Whether it is a facet of a curved surface.
+    pub(super) is_curved: bool,
+    /// Pixels at which its plane was fitted.
+    fitted_at: f64,
+}
+
+impl Region {
+    pub(super) fn of(cell: &Cell) -> Self {
+        let mut region = Region {
+            sums: cell.moments(cell.origin()),
+            origin: cell.origin(),
+            abc: [0.0; 3],
+            middle: [0.0; 2],
+            squares: 0.0,
+            variance: cell.variance * cell.n,
+            smooth: cell.smooth * cell.n,
+            is_curved: false,
+            fitted_at: 0.0,
+        };
+        region.refit();
+        region
+    }
+
+    /// The plane's q at a pixel.
+    #[inline(always)]
+    pub(super) fn at(&self, u: f64, v: f64) -> f64 {
+        let [u0, v0, q0] = self.origin;
+        self.abc[0] * (u - u0) + self.abc[1] * (v - v0) + self.abc[2] + q0
+    }
+
+    /// The plane about a pixel: its slope along u and v, and q there.
+    #[inline(always)]
+    pub(super) fn about(&self, [u, v]: [usize; 2]) -> [f32; 3] {
+        let [a, b, _] = self.abc.map(|number| number as f32);
+        [a, b, self.at(u as f64, v as f64) as f32]
+    }
+
+    /// How much q changes from one pixel to the next, as a share of what q in the middle is from that at infinite range.
+    pub(super) fn steepness(&self, at_infinity: f64) -> f64 {
+        let [u, v] = self.middle;
+        self.abc[0].hypot(self.abc[1]) / (self.at(u, v) - at_infinity).abs()
+    }
+
+    /// Its squared residuals as a multiple of what the noise leaves. A wall that a camera bows lies off its plane by more
+    /// than any small patch of it shows.
+    #[inline(always)]
+    pub(super) fn excess(&self) -> f64 {
+        self.squares / (self.variance + self.smooth)
+    }
+
+    /// Fits its plane to its sums.
+    pub(super) fn refit(&mut self) {
+        if let Some(fit) = self.sums.fit() {
+            self.abc = fit.abc;
+            self.squares = fit.rms * fit.rms * fit.n;
+        }
+        let [u, v, _] = self.origin;
+        self.middle = [u + self.sums.u / self.sums.n, v + self.sums.v / self.sums.n];
+        self.fitted_at = self.sums.n;
+    }
+
+    /// Takes a cell's pixels in; the plane stays as it is.
+    #[inline(always)]
+    pub(super) fn take(&mut self, cell: &Cell) {
+        self.sums.merge(&cell.moments(self.origin));
+        self.variance += cell.variance * cell.n;
+        self.smooth += cell.smooth * cell.n;
+    }
+
+    /// Gives a cell's pixels away; the plane stays as it is.
+    pub(super) fn give(&mut self, cell: &Cell) {
+        self.sums.remove(&cell.moments(self.origin));
+        self.variance -= cell.variance * cell.n;
+        self.smooth -= cell.smooth * cell.n;
+    }
+
+    /// Takes a cell in if its pixels lie on the plane.
+    #[inline(always)]
+    pub(super) fn takes(&mut self, cell: &Cell, only_flat: bool, inlier_threshold: f64) -> bool {
+        let most = if only_flat { cell.most_joining() } else { cell.most_squares(inlier_threshold) };
+        if self.sums.n < SMALL {
+            return self.takes_anew(cell, most);
+        }
+        if cell.squares_about(self.abc, self.origin) > most {
+            return false;
+        }
+        self.take(cell);
+        if self.sums.n >= REFIT * self.fitted_at
+            && let Some(fit) = self.sums.fit()
+        {
+            self.aim(fit.abc);
+        }
+        true
+    }
+
+    /// Takes a cell in if its pixels lie on the plane of both.
+    #[inline(always)]
+    fn takes_anew(&mut self, cell: &Cell, most: f64) -> bool {
+        let mut both = self.sums;
+        both.merge(&cell.moments(self.origin));
+        let Some(fit) = both.fit() else { return false };
+        let takes = cell.squares_about(fit.abc, self.origin) <= most;
+        if takes {
+            self.take(cell);
+            self.aim(fit.abc);
+        }
+        takes
+    }
+
+    /// Sets its plane alone: while it grows nobody asks for what else [`Region::refit`] finds.
+    #[inline(always)]
+    fn aim(&mut self, abc: [f64; 3]) {
+        self.abc = abc;
+        self.fitted_at = self.sums.n;
+    }
+
+    /// Takes another region's pixels in.
+    pub(super) fn absorb(&mut self, other: &Region) {
+        self.sums.merge(&self.sums_of(other));
+        self.variance += other.variance;
+        self.smooth += other.smooth;
+        self.refit();
+    }
+
+    /// Sums of another region about this one's origin.
+    #[inline(always)]
+    pub(super) fn sums_of(&self, other: &Region) -> Moments {
+        let [u, v, q] = self.origin;
+        other.sums.moved([other.origin[0] - u, other.origin[1] - v, other.origin[2] - q])
+    }
+
+    /// Sum of a cell's squared residuals about its plane.
+    #[inline(always)]
+    pub(super) fn squares_of(&self, cell: &Cell) -> f64 {
+        cell.squares_about(self.abc, self.origin)
+    }
+
+    /// Whether it is seen too much edge-on for a plane.
+    pub(super) fn is_edge_on(&self, measure: Measure) -> bool {
+        is_on("edge-on") && self.steepness(Space::at_infinity(measure)) > EDGE_ON
+    }
+}
+
+/// Variance of q that a slope `(a, b)` of q makes of a ray that is known to within `ray` pixels.
+#[inline(always)]
+pub(super) fn of_slope(ray: f32, a: f32, b: f32) -> f32 {
+    ray * ray * (a * a + b * b)
+}
+
+/// The regions of a map and the noise to expect.
+#[derive(Clone, Copy)]
+pub(super) struct Planes<'a> {
+    pub(super) regions: &'a [Region],
+    pub(super) noise: &'a NoiseModel,
+    /// How far from a plane its pixels may lie, standard deviations.
+    pub(super) inlier_threshold: f64,
+    /// Whether curved regions have labels, and planes have none.
+    pub(super) curved: bool,
+}
+
+/// The label of what belongs to a curved region while planes are sought.
+pub(super) const BENT: u16 = u16::MAX;
+
+impl Planes<'_> {
+    #[inline(always)]
+    pub(super) fn region(&self, id: u32) -> &Region {
+        &self.regions[id as usize]
+    }
+
+    /// A region's label in the region image while planes are sought: [`BENT`] for all that are curved; while curved ones
+    /// are, 0 for planes.
+    #[inline(always)]
+    pub(super) fn label(&self, id: u32) -> u16 {
+        match (self.region(id).is_curved, self.curved) {
+            (true, false) => BENT,
+            (false, true) => 0,
+            _ => id as u16 + 1,
+        }
+    }
+
+    /// Variance of a pixel about a region's plane at q: the noise, and what the slope makes of the ray; in a region that
+    /// bows by more than that, so much more.
+    #[inline(always)]
+    pub(super) fn variance(&self, region: &Region, q: f64) -> f64 {
+        let [a, b, _] = region.abc.map(|number| number as f32);
+        // The two parts of a ray are taken at their worst, off to the same side.
+        let expected = self.noise.variance(q)
+            + self.noise.smooth_sigma(q).powi(2)
+            + f64::from(of_slope((self.noise.ray() + self.noise.smooth_ray()) as f32, a, b));
+        if is_on("excess") { region.excess().max(1.0) * expected } else { expected }
+    }
+
+    /// Square of the largest distance from a region's plane at q.
+    #[inline(always)]
+    pub(super) fn reach(&self, region: &Region, q: f64) -> f64 {
+        self.inlier_threshold * self.inlier_threshold * self.variance(region, q)
+    }
+}
+
+/// A region image as a map of numbers, [`BENT`] and 0 missing.
+pub(super) fn of_image<'a>(image: &'a [u16], field: &Field) -> Result<DepthView<'a, u16>> {
+    let Field { width, height, stride, .. } = *field;
+    DepthView::with_stride(&image[..stride * height], width, height, stride)?.valid_range(1, BENT - 1)
+}
+
+/// Columns and rows of cells around a region.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CellBox {
+    pub(super) first: [usize; 2],
+    pub(super) last: [usize; 2],
+}
+
+impl CellBox {
+    const NOTHING: CellBox = CellBox { first: [usize::MAX; 2], last: [0; 2] };
+
+    pub(super) fn area(&self) -> usize {
+        (self.last[0] + 1).saturating_sub(self.first[0]) * (self.last[1] + 1).saturating_sub(self.first[1])
+    }
+
+    fn include(&mut self, columns: [usize; 2], row: usize) {
+        self.first = [self.first[0].min(columns[0]), self.first[1].min(row)];
+        self.last = [self.last[0].max(columns[1]), self.last[1].max(row)];
+    }
+
+    /// The box in cells that are `1 << level` times as large, with its own size added on every side.
+    pub(super) fn widened(self, level: usize, grid: &Grid) -> CellBox {
+        let (first, last) = (self.first.map(|place| place >> level), self.last.map(|place| place >> level));
+        let reach = [0, 1].map(|axis| last[axis].saturating_sub(first[axis]) + 2);
+        let most = [grid.columns - 1, grid.rows - 1];
+        CellBox {
+            first: [0, 1].map(|axis| first[axis].saturating_sub(reach[axis])),
+            last: [0, 1].map(|axis| (last[axis] + reach[axis]).min(most[axis])),
+        }
+    }
+}
+
+/// Finds the columns and rows of every region.
+pub(super) fn find_boxes(grid: &Grid, all: &[Region], boxes: &mut Vec<CellBox>) {
+    reserve_to(boxes, grid.len());
+    boxes.resize(all.len(), CellBox::NOTHING);
+    for (row, ids) in grid.region.chunks_exact(grid.columns).enumerate() {
+        each_run(ids, 0, |id, columns| boxes[id as usize].include([columns.start, columns.end - 1], row));
+    }
+}

@@ -1,0 +1,29 @@
+//! What a sensor's error is at a given range.
+//!
+//! In: what is known of the sensor ([`SensorNoise`]), what the map's numbers mean, and the steps that they come in.
+//! Out: a [`NoiseModel`]: the variance of one pixel in the space where planes are affine ([`Space`]), inverse depth
+//! for depth maps, the value itself for all others. Structured light and stereo err by a constant there, time of
+//! flight by a constant in depth; both parts add. [`Estimator`] finds it out from frames.
+
+mod enlarged;
+mod estimate;
+mod lanes;
+mod model;
+mod rounding;
+pub(crate) mod scales;
+pub(crate) mod sensor_noise;
+mod space;
+mod steps;
+mod table;
+
+pub use enlarged::{Enlargement, EnlargementFinder};
+pub(crate) use estimate::PADDED;
+pub(crate) use estimate::noise_of_map;
+pub use estimate::{Estimate, Estimator};
+pub use model::{NoiseModel, Patch};
+pub use rounding::{Rounding, RoundingFinder};
+pub use sensor_noise::SensorNoise;
+pub(crate) use space::LARGEST_Q;
+pub use space::Space;
+pub(crate) use steps::Steps;
+pub use table::{MAX_ROWS, NoiseTable};

@@ -1,0 +1,307 @@
+//! The variance of a pixel's q: what a map is held against.
+
+use super::lanes::{LANES, Lanes, lanes};
+use super::rounding::{Rounding, steady};
+use super::sensor_noise::SensorNoise;
+use super::space::Space;
+use crate::camera::Measure;
+
+/// Variance of one pixel's q: the sensor's own error and the rounding of its values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoiseModel {
+    noise: SensorNoise,
+    space: Space,
+    /// Inverse depth, 1/m, is `slope q + offset`.
+    slope: f64,
+    offset: f64,
+    /// Steps of q.
+    rounding: Rounding,
+    /// Whether the noise holds what rounding does on average.
+    is_scatter: bool,
+    /// How well the ray of a pixel is known, pixels; 0 where nobody asks.
+    ray: f64,
+    /// The smooth part of the error, and what of the ray's part is smooth.
+    smooth: SensorNoise,
+    smooth_ray: f64,
+    /// Whether the smooth part is what a map shows.
+    is_smooth_shown: bool,
+}
+
+/// What rounding to steps may do, in steps, to all pixels of a small patch at once: on a slow ramp they lie on one
+/// level, up to half a step off, and no average over them helps. (Over many steps it would be 1 / sqrt(12).)
+const ROUNDING: f64 = 0.5;
+
+impl NoiseModel {
+    /// The model of a map whose numbers mean `measure` and come in steps of `step` map units (0 for values that are not
+    /// rounded). `None` if the noise is stated for another kind of map: of disparity for depth, or of depth for
+    /// disparity of an unknown rig.
+    pub fn new(measure: Measure, noise: SensorNoise, step: f64) -> Option<Self> {
+        let (slope, offset) = match (measure, noise) {
+            (Measure::Depth { .. }, SensorNoise::Value { .. }) => return None,
+            (Measure::Depth { .. }, _) => (1.0, 0.0),
+            (Measure::InverseDepth { slope, offset }, _) => (slope, offset),
+            (Measure::Disparity, SensorNoise::Value { .. }) => (f64::NAN, f64::NAN),
+            (Measure::Disparity, _) => return None,
+        };
+        let smooth = match noise {
+            SensorNoise::Value { .. } => SensorNoise::Value { sigma: 0.0 },
+            _ => SensorNoise::Depth { base: 0.0, growth: 0.0 },
+        };
+        let space = Space::of(measure);
+        let rounding = Rounding::of_values(step, space);
+        Some(NoiseModel {
+            noise,
+            space,
+            slope,
+            offset,
+            rounding,
+            is_scatter: false,
+            ray: 0.0,
+            smooth,
+            smooth_ray: 0.0,
+            is_smooth_shown: false,
+        })
+    }
+
+    /// The same, its noise being the scatter that a map shows, with what rounding does on average.
+    pub(crate) fn of_scatter(self) -> Self {
+        NoiseModel { is_scatter: true, ..self }
+    }
+
+    /// The same for rays that are known to within `ray` pixels, one standard deviation.
+    pub(crate) fn with_ray(self, ray: f64) -> Self {
+        NoiseModel { ray, ..self }
+    }
+
+    /// The same with other steps of q.
+    pub(crate) fn with_rounding(self, rounding: Rounding) -> Self {
+        NoiseModel { rounding, ..self }
+    }
+
+    /// The same with a smooth part, of a kind that suits the map as well.
+    pub(crate) fn with_smooth(self, smooth: SensorNoise, smooth_ray: f64) -> Self {
+        NoiseModel { smooth, smooth_ray, ..self }
+    }
+
+    /// The same with so many times the smooth part.
+    pub(crate) fn with_smooth_times(self, factor: f64) -> Self {
+        self.with_smooth(self.smooth.times(factor), self.smooth_ray * factor)
+    }
+
+    /// The same, its smooth part being what a map shows.
+    pub(crate) fn of_smooth_shown(self) -> Self {
+        NoiseModel { is_smooth_shown: true, ..self }
+    }
+
+    /// Whether the smooth part is what a map shows, and so as uncertain.
+    pub(crate) fn is_smooth_shown(&self) -> bool {
+        self.is_smooth_shown
+    }
+
+    /// Pixels of the ray whose error is smooth.
+    pub(crate) fn smooth_ray(&self) -> f64 {
+        self.smooth_ray
+    }
+
+    /// Variance of the smooth part of a pixel near q where a surface has that slope, `a^2 + b^2`.
+    pub(crate) fn smooth_variance(&self, q: f64, slope: f64) -> f64 {
+        self.smooth_sigma(q).powi(2) + self.smooth_ray * self.smooth_ray * slope
+    }
+
+    /// The same with a smooth part so many times as large.
+    pub(crate) fn smoother(self, factor: f64) -> Self {
+        NoiseModel { smooth: self.smooth.times(factor), smooth_ray: factor * self.smooth_ray, ..self }
+    }
+
+    /// Variance of what a pixel near q has for itself, rounding as if noise dithered it.
+    pub(crate) fn own_variance(&self, q: f64) -> f64 {
+        let (sensor, rounding) = (self.sensor_sigma(q).powi(2), self.step(q).powi(2) / 12.0);
+        if self.is_scatter { sensor.max(rounding) } else { sensor + rounding }
+    }
+
+    /// Standard deviation of the smooth part of q.
+    pub(crate) fn smooth_sigma(&self, q: f64) -> f64 {
+        self.sigma_by(&self.smooth, q)
+    }
+
+    /// How well the ray of a pixel is known, pixels, one standard deviation; it is no part of [`NoiseModel::variance`],
+    /// which knows no slope.
+    pub(crate) fn ray(&self) -> f64 {
+        self.ray
+    }
+
+    /// Variance of one pixel's q, rounding taken at its worst.
+    #[inline]
+    pub fn variance(&self, q: f64) -> f64 {
+        self.with_sensor(q, self.sensor_sigma(q))
+    }
+
+    /// Variance of one pixel's q where the sensor's own error has that standard deviation.
+    #[inline(always)]
+    fn with_sensor(&self, q: f64, sensor: f64) -> f64 {
+        let square = self.step(q).powi(2);
+        self.with_steps(q, sensor, square, self.steady(square, sensor * sensor))
+    }
+
+    /// The same where a step has that square, so much of which is [`steady`].
+    #[inline(always)]
+    fn with_steps(&self, q: f64, sensor: f64, square: f64, steady: f64) -> f64 {
+        let single = 2e-7 * q; // single precision, in which q is kept
+        // What a map shows as scatter has what noise makes of the steps already.
+        let dithered = if self.is_scatter { 0.0 } else { (1.0 - steady) * square / 12.0 };
+        sensor * sensor + steady * ROUNDING * ROUNDING * square + dithered + single * single
+    }
+
+    /// [`steady`] for the sensor's own error of that variance.
+    #[inline(always)]
+    fn steady(&self, square: f64, sensor: f64) -> f64 {
+        steady(square, if self.is_scatter { sensor } else { sensor + square / 12.0 })
+    }
+
+    /// Variances of single pixels of many cells of `side` pixels, of which q and slopes are given, and of the smooth part:
+    /// with what a rounding is that all of a cell share.
+    #[inline(always)]
+    pub(crate) fn expect(&self, [q, a, b]: [&[f32]; 3], side: f64, [variances, smooth]: [&mut [f32]; 2]) {
+        let slopes = a.chunks(LANES).zip(b.chunks(LANES));
+        let found = variances.chunks_mut(LANES).zip(smooth.chunks_mut(LANES));
+        for ((q, (a, b)), (variances, smooth)) in q.chunks(LANES).zip(slopes).zip(found) {
+            let of_cells = self.expect_lanes([q, a, b].map(lanes), side);
+            variances.copy_from_slice(&of_cells[0][..variances.len()]);
+            smooth.copy_from_slice(&of_cells[1][..smooth.len()]);
+        }
+    }
+
+    #[inline(always)]
+    fn expect_lanes(&self, [q, a, b]: [Lanes; 3], side: f64) -> [[f32; LANES]; 2] {
+        let (steps, sensor, shared) =
+            (self.rounding.steps(&q), self.sigmas(&self.noise, &q), self.sigmas(&self.smooth, &q));
+        let [mut variances, mut smooth] = [[0.0; LANES]; 2];
+        for lane in 0..LANES {
+            let (square, sensor, shared) = (steps[lane] * steps[lane], sensor[lane], shared[lane]);
+            let steady = self.steady(square, sensor * sensor);
+            variances[lane] = self.with_steps(q[lane], sensor, square, steady) as f32;
+            let slope = a[lane] * a[lane] + b[lane] * b[lane];
+            let rounding = steady * square / 12.0 * (square / (square + side * side * slope + f64::MIN_POSITIVE));
+            smooth[lane] = (shared * shared + self.smooth_ray * self.smooth_ray * slope + rounding) as f32;
+        }
+        [variances, smooth]
+    }
+
+    /// What the map's steps are in q, at q.
+    pub(crate) fn step(&self, q: f64) -> f64 {
+        self.rounding.step(q)
+    }
+
+    /// Standard deviation of q by the noise as stated, rounding left out.
+    ///
+    /// An error of depth of `s` metres is `s p^2` in inverse depth p, and that over the slope in units of q.
+    #[inline]
+    pub fn sensor_sigma(&self, q: f64) -> f64 {
+        self.sigma_by(&self.noise, q)
+    }
+
+    /// The same of either part.
+    #[inline(always)]
+    fn sigma_by(&self, part: &SensorNoise, q: f64) -> f64 {
+        match part {
+            SensorNoise::Value { sigma } => *sigma,
+            SensorNoise::Depth { base, growth } => self.sigma_of_depth(*base, *growth, q),
+            SensorNoise::Table(table) => {
+                let p = self.inverse_depth(q);
+                table.sigma_m(p.recip()) * p * p / self.slope.abs()
+            }
+        }
+    }
+
+    /// The same at many q.
+    #[inline(always)]
+    fn sigmas(&self, part: &SensorNoise, q: &Lanes) -> Lanes {
+        let mut sigmas = [0.0; LANES];
+        match *part {
+            SensorNoise::Value { sigma } => sigmas.fill(sigma),
+            SensorNoise::Depth { base, growth } => {
+                (0..LANES).for_each(|lane| sigmas[lane] = self.sigma_of_depth(base, growth, q[lane]));
+            }
+            SensorNoise::Table(_) => (0..LANES).for_each(|lane| sigmas[lane] = self.sigma_by(part, q[lane])),
+        }
+        sigmas
+    }
+
+    #[inline(always)]
+    fn sigma_of_depth(&self, base: f64, growth: f64, q: f64) -> f64 {
+        let p = self.inverse_depth(q);
+        (growth + base * p * p) / self.slope.abs()
+    }
+
+    #[inline(always)]
+    fn inverse_depth(&self, q: f64) -> f64 {
+        (self.slope * q + self.offset).max(0.0)
+    }
+
+    /// Standard deviation of depth at range `depth_m` by the sensor's own error, metres; `None` for disparity of an
+    /// unknown rig.
+    pub fn depth_sigma_m(&self, depth_m: f64) -> Option<f64> {
+        let sigma = self.sensor_sigma((depth_m.recip() - self.offset) / self.slope);
+        let sigma_m = sigma * self.slope.abs() * depth_m * depth_m;
+        sigma_m.is_finite().then_some(sigma_m)
+    }
+
+    /// The variance that a pixel near q brings into the fit of a patch: that of the sensor, and that of rounding, which
+    /// counts more where pixels share its error.
+    ///
+    /// Rounding to steps D has the variance D^2 / 12. Of it the part `exp(-(2 pi sigma / D)^2)` follows the
+    /// signal, the rest is as good as white, since the sensor's noise sigma dithers it (Widrow and Kollar,
+    /// *Quantization Noise*, 2008: the first harmonic of the error's mean). The patch says how many pixels share
+    /// the part that follows the signal.
+    #[inline]
+    pub fn variance_in(&self, patch: &Patch, q: f64) -> f64 {
+        let (sigma, step) = (self.sensor_sigma(q), self.step(q));
+        if step == 0.0 {
+            return sigma * sigma;
+        }
+        let white = step * step / 12.0;
+        let sensor = if self.is_scatter { (sigma * sigma - white).max(0.0) } else { sigma * sigma };
+        let dither = std::f64::consts::TAU * sensor.sqrt() / step;
+        if dither > 4.0 {
+            return sensor + white; // one part in ten million follows the signal
+        }
+        let alike = patch.alike(step);
+        if alike == 1.0 {
+            return sensor + white;
+        }
+        sensor + white * (1.0 + (-dither * dither).exp() * (alike - 1.0))
+    }
+}
+
+/// Pixels that one plane is fitted to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Patch {
+    /// What q changes by per column and per row.
+    pub gradient: [f64; 2],
+    /// Columns and rows of the box around them.
+    pub extent: [f64; 2],
+    /// How many they are.
+    pub pixels: f64,
+}
+
+impl Patch {
+    /// How many pixels count as one, since they share the error of rounding to steps: 1 if all err independently, all if
+    /// they lie on one level.
+    ///
+    /// Along an axis the error is a sawtooth of period P = step / gradient. A line of L pixels sums to its amplitude
+    /// times P / pi (the first harmonic, over the last period that is cut off), at most times L; to that of L
+    /// independent draws if the period is below two pixels. Lines within a period of each other sum alike, others
+    /// independently, as the border of a patch is ragged. Both axes bound the sum of the whole (our derivation).
+    #[inline]
+    fn alike(&self, step: f64) -> f64 {
+        let period = self.gradient.map(|gradient| step / gradient.abs());
+        let [columns, rows] = self.extent;
+        let line = |period: f64, length: f64| {
+            if period < 2.0 { length } else { (period / std::f64::consts::PI).min(length).powi(2) }
+        };
+        let lines = |period: f64, length: f64| period.clamp(1.0, length);
+        let along_rows = line(period[0], columns) * lines(period[1], rows) / columns;
+        let along_columns = line(period[1], rows) * lines(period[0], columns) / rows;
+        along_rows.min(along_columns).clamp(1.0, self.pixels)
+    }
+}

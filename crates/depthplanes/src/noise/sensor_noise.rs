@@ -1,0 +1,45 @@
+//! What a sensor's maker or a calibration says of its error.
+
+use super::table::NoiseTable;
+
+/// What a sensor's maker or a calibration says of its error: the standard deviation of one pixel. Rounding to the
+/// map's steps comes on top.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a handful exist at a time, and being `Copy` keeps a `Sensor` plain")]
+pub enum SensorNoise {
+    /// Of depth z: `base + growth z^2`, metres.
+    Depth {
+        /// At range 0, metres.
+        base: f64,
+        /// 1/m. Structured light and stereo: `(sigma of disparity) / (f T)` (the derivative of eq. 6).
+        growth: f64,
+    },
+    /// Of the map's value, map units: constant in disparity.
+    Value {
+        /// Map units.
+        sigma: f64,
+    },
+    /// Of depth, by a table over the range.
+    Table(NoiseTable),
+}
+
+impl SensorNoise {
+    /// Standard deviation of depth at range `depth_m`, metres; `None` for [`SensorNoise::Value`], which takes a
+    /// measure to become one ([`super::NoiseModel::depth_sigma_m`]).
+    pub fn depth_sigma_m(&self, depth_m: f64) -> Option<f64> {
+        match self {
+            SensorNoise::Depth { base, growth } => Some(base + growth * depth_m * depth_m),
+            SensorNoise::Table(table) => Some(table.sigma_m(depth_m)),
+            SensorNoise::Value { .. } => None,
+        }
+    }
+
+    /// The same, its standard deviations so many times as large.
+    pub(crate) fn times(self, factor: f64) -> Self {
+        match self {
+            SensorNoise::Depth { base, growth } => SensorNoise::Depth { base: factor * base, growth: factor * growth },
+            SensorNoise::Value { sigma } => SensorNoise::Value { sigma: factor * sigma },
+            SensorNoise::Table(table) => SensorNoise::Table(table.times(factor)),
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! The space where planes are affine.
+
+use crate::camera::Measure;
+
+/// Largest q that counts as measured: sums of its squares are numbers of single precision. As depth it is a femtometre.
+pub(crate) const LARGEST_Q: f32 = 1e15;
+
+/// The space where planes of a map are affine, `q = a u + b v + c`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Space {
+    /// q is inverse depth, 1/m, of maps with that many metres per map unit.
+    InverseDepth {
+        /// Metres per map unit.
+        metres: f64,
+    },
+    /// q is the map's value: disparity, or inverse depth up to a scale and an offset.
+    Value,
+}
+
+impl Space {
+    /// The space for a map whose numbers mean that.
+    pub fn of(measure: Measure) -> Self {
+        match measure {
+            Measure::Depth { metres } => Space::InverseDepth { metres },
+            Measure::InverseDepth { .. } | Measure::Disparity => Space::Value,
+        }
+    }
+
+    /// q of what is infinitely far. Disparity whose offset nobody states is taken to have none.
+    pub(crate) fn at_infinity(measure: Measure) -> f64 {
+        match measure {
+            Measure::InverseDepth { slope, offset } => -offset / slope,
+            Measure::Depth { .. } | Measure::Disparity => 0.0,
+        }
+    }
+
+    /// q of a map value.
+    #[inline(always)]
+    pub fn q(self, value: f64) -> f64 {
+        match self {
+            Space::InverseDepth { metres } => 1.0 / (metres * value),
+            Space::Value => value,
+        }
+    }
+
+    /// What a difference of one map unit is in q, at q: |dq / dvalue|.
+    #[inline]
+    pub fn unit(self, q: f64) -> f64 {
+        match self {
+            Space::InverseDepth { metres } => metres * q * q,
+            Space::Value => 1.0,
+        }
+    }
+}
