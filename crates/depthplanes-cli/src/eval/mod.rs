@@ -113,7 +113,7 @@ fn tasks<'a>(items: &'a [Item], entries: &'a [Entry], repeat: usize) -> Vec<Task
 /// # Errors
 /// A folder that cannot be written to, a map that cannot be read.
 fn make(tasks: &[Task<'_>], pace: Pace, folder: &Path) -> Outcome<Store> {
-    crate::commands::make_folder(&folder.join(LABELS))?;
+    crate::folders::make_folder(&folder.join(LABELS))?;
     let mut store = Store::open(&folder.join("rows.jsonl"))?;
     let open: Vec<&Task<'_>> = tasks.iter().filter(|task| !task.is_done(&store, folder)).collect();
     if open.len() < tasks.len() {
