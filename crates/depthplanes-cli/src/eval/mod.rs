@@ -17,7 +17,6 @@ use crate::pool;
 use crate::run::Recipe;
 use datasets::Item;
 use indicatif::{ProgressBar, ProgressStyle};
-use report::Section;
 use rows::{Key, Row, Store};
 use std::collections::HashSet;
 use std::io::Write;
@@ -56,19 +55,7 @@ pub(crate) fn run(wanted: &Eval, out: &mut dyn Write) -> Outcome {
     let store = make(&tasks, pace, &wanted.report)?;
     let rows: Vec<&Row> = tasks.iter().filter_map(|task| store.get(&task.key)).collect();
     let sections = report::by_dataset(&wanted.report, &rows, &items)?;
-    finish("Evaluation", &wanted.report, &rows, &sections, out)
-}
-
-/// Writes the report, and its tables for the terminal.
-fn finish(title: &str, folder: &Path, rows: &[&Row], sections: &[Section], out: &mut dyn Write) -> Outcome {
-    let written = report::write(title, folder, rows, sections)?;
-    write!(out, "{}", report::summary(sections))?;
-    let refused = rows.iter().filter(|row| matches!(row.outcome, rows::Made::Refused(_))).count();
-    if refused > 0 {
-        note(&format!("{refused} of {} results are refusals; the report says why", rows.len()));
-    }
-    writeln!(out, "wrote {}", written.join(", "))?;
-    Ok(())
+    report::write("Evaluation", &wanted.report, &rows, &sections, out)
 }
 
 /// The maps of all sets.

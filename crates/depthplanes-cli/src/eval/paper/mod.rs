@@ -10,9 +10,9 @@ mod truth;
 
 use super::datasets::Item;
 use super::report::plots::Plot;
-use super::report::strips;
+use super::report::{self, strips};
 use super::rows::Row;
-use super::{Entry, Pace, finish, make, tasks};
+use super::{Entry, Pace, make, tasks};
 use crate::args::Paper;
 use crate::failure::{Outcome, note};
 use crate::run::Recipe;
@@ -84,7 +84,7 @@ pub(crate) fn run(wanted: &Paper, out: &mut dyn Write) -> Outcome {
         claims::section(&middlebury, &kinect),
         truth::section(folder, &[&disparity, &depth])?,
     ];
-    finish("The paper's protocol", folder, &rows, &sections, out)
+    report::write("The paper's protocol", folder, &rows, &sections, out)
 }
 
 /// A note if maps are not there.
