@@ -4,6 +4,7 @@
 //! outputs, encodings and presets come from the libraries' tables, so that a new row there is a new
 //! flag here.
 
+mod exit_codes;
 mod flags;
 mod several;
 
@@ -12,6 +13,8 @@ use depthplanes::Coplanar;
 use depthplanes::methods::{self, METHODS, MethodInfo};
 use depthplanes::outline::DEFAULT_TOLERANCE_PX;
 use depthplanes_io::outputs::{OUTPUTS, Output};
+use exit_codes::EXIT_CODES;
+use flags::path_given;
 use std::ffi::OsString;
 use std::io::Write;
 use std::path::PathBuf;
@@ -107,14 +110,14 @@ pub(crate) fn parse() -> Command {
         "paper" => Command::Paper(several::paper(matches)),
         "compare" => Command::Compare(Box::new(several::compare(matches))),
         "datasets" => Command::Datasets,
-        "demo" => Command::Demo { out_dir: path(matches, "out-dir").expect("it has a default") },
+        "demo" => Command::Demo { out_dir: path_given(matches, "out-dir").expect("it has a default") },
         "methods" => Command::Methods,
         "params" => Command::Params { method: method(matches) },
         "formats" => Command::Formats,
         "encodings" => Command::Encodings,
         "presets" => Command::Presets,
         "completions" => Command::Completions { shell: *matches.get_one("shell").expect("it is required") },
-        "man" => Command::Man { out_dir: path(matches, "out-dir") },
+        "man" => Command::Man { out_dir: path_given(matches, "out-dir") },
         other => unreachable!("no command `{other}`"),
     }
 }
@@ -140,12 +143,6 @@ pub(crate) fn man_pages() -> std::io::Result<Vec<(String, Vec<u8>)>> {
     };
     pages.into_iter().map(page).collect()
 }
-
-const EXIT_CODES: &str = "Exit codes:
-  0    done
-  1    something went wrong while processing or writing
-  2    wrong use or wrong input: usage, an unreadable file, a parameter out of range;
-       `detect`, `inspect` and `noise` do the good ones of many inputs all the same";
 
 fn program() -> clap::Command {
     clap::Command::new("depthplanes")
@@ -322,15 +319,15 @@ fn method_arg(id: &'static str) -> Arg {
 
 fn detect(matches: &ArgMatches) -> Detect {
     let count = |name| *matches.get_one::<usize>(name).expect("it has a default");
-    let outputs = OUTPUTS.iter().filter_map(|output| Some((output, path(matches, output.name)?)));
+    let outputs = OUTPUTS.iter().filter_map(|output| Some((output, path_given(matches, output.name)?)));
     Detect {
         inputs: inputs(matches),
         reading: Reading::from_matches(matches),
         method: method(matches).expect("it has a default"),
         parameters: flags::parameters_given(matches),
-        noise_table: path(matches, "noise-table"),
+        noise_table: path_given(matches, "noise-table"),
         outputs: outputs.collect(),
-        out_dir: path(matches, "out-dir"),
+        out_dir: path_given(matches, "out-dir"),
         legend: matches.get_flag("legend"),
         merge_coplanar: matches.get_one("merge-coplanar").copied(),
         outlines: matches.get_one("outlines").copied(),
@@ -350,7 +347,7 @@ fn explain(matches: &ArgMatches) -> Explain {
         reading: Reading::from_matches(matches),
         method: method(matches).expect("it has a default"),
         parameters: flags::parameters_given(matches),
-        noise_table: path(matches, "noise-table"),
+        noise_table: path_given(matches, "noise-table"),
         json: matches.get_flag("json"),
     }
 }
@@ -373,10 +370,6 @@ fn method(matches: &ArgMatches) -> Option<&'static MethodInfo> {
 
 fn inputs(matches: &ArgMatches) -> Vec<OsString> {
     matches.get_many::<OsString>("input").into_iter().flatten().cloned().collect()
-}
-
-fn path(matches: &ArgMatches, id: &str) -> Option<PathBuf> {
-    matches.get_one::<PathBuf>(id).cloned()
 }
 
 #[cfg(test)]

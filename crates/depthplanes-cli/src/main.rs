@@ -4,6 +4,7 @@ mod args;
 mod commands;
 mod eval;
 mod failure;
+mod folders;
 mod inputs;
 mod load;
 mod measures;

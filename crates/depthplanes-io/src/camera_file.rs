@@ -13,7 +13,7 @@ use serde_json::Value;
 
 use crate::encoding::Stereo;
 use crate::error::{Error, Result};
-use crate::read::read_bytes;
+use crate::file_bytes::read_bytes;
 
 /// What a camera file states.
 #[derive(Clone, Copy, Debug, PartialEq)]

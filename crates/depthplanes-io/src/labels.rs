@@ -6,9 +6,9 @@
 use std::path::Path;
 
 use crate::error::{Error, Result};
+use crate::file_bytes::read_bytes;
 use crate::formats::{self, DecodeOptions};
 use crate::frame::Pixels;
-use crate::read::read_bytes;
 
 /// A label image.
 #[derive(Clone, Debug, PartialEq, Eq)]

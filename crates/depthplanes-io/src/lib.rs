@@ -7,6 +7,7 @@
 pub mod camera_file;
 pub mod encoding;
 pub mod error;
+mod file_bytes;
 pub mod formats;
 mod frame;
 pub mod inspect;

@@ -8,7 +8,7 @@ use std::path::Path;
 use depthplanes::noise::NoiseTable;
 
 use crate::error::{Error, Result};
-use crate::read::read_bytes;
+use crate::file_bytes::read_bytes;
 
 const MAX_BYTES: usize = 1 << 16;
 

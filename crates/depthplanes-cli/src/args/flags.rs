@@ -134,6 +134,11 @@ pub(super) fn parameters_given(matches: &ArgMatches) -> Vec<(&'static str, f64)>
     parameter_names().into_iter().filter_map(given).collect()
 }
 
+/// The path given for a flag, if one was.
+pub(super) fn path_given(matches: &ArgMatches, id: &str) -> Option<PathBuf> {
+    matches.get_one::<PathBuf>(id).cloned()
+}
+
 /// Each name once, in the order of the tables.
 fn parameter_names() -> Vec<&'static str> {
     let mut names = Vec::new();

@@ -1,7 +1,7 @@
 //! Commands that run several methods: `compare`, `eval`, `paper`.
 
-use super::flags::{self, Reading};
-use super::{EXIT_CODES, path};
+use super::exit_codes::EXIT_CODES;
+use super::flags::{self, Reading, path_given};
 use clap::{Arg, ArgMatches, builder::PossibleValuesParser, value_parser};
 use depthplanes::methods::{self, METHODS};
 use std::ffi::OsString;
@@ -126,9 +126,9 @@ pub(super) fn compare(matches: &ArgMatches) -> Compare {
         reading: Reading::from_matches(matches),
         methods: matches.get_many::<String>("methods").expect("it has a default").cloned().collect(),
         parameters: flags::parameters_given(matches),
-        truth: path(matches, "truth"),
+        truth: path_given(matches, "truth"),
         truth_from: *matches.get_one("truth-from").expect("it has a default"),
-        picture: path(matches, "picture"),
+        picture: path_given(matches, "picture"),
         repeat: count("repeat"),
         threads: count("threads"),
     }
@@ -142,8 +142,8 @@ pub(super) fn eval(matches: &ArgMatches) -> Eval {
         methods: texts("methods"),
         parameters: flags::parameters_given(matches),
         peers: matches.get_many::<String>("peers").into_iter().flatten().cloned().collect(),
-        data: path(matches, "data"),
-        report: path(matches, "report").expect("it is required"),
+        data: path_given(matches, "data"),
+        report: path_given(matches, "report").expect("it is required"),
         repeat: count("repeat"),
         jobs: count("jobs"),
         threads: count("threads"),
@@ -154,8 +154,8 @@ pub(super) fn paper(matches: &ArgMatches) -> Paper {
     let count = |name| *matches.get_one::<usize>(name).expect("it has a default");
     Paper {
         methods: matches.get_many::<String>("methods").expect("it has a default").cloned().collect(),
-        data: path(matches, "data"),
-        report: path(matches, "report").expect("it is required"),
+        data: path_given(matches, "data"),
+        report: path_given(matches, "report").expect("it is required"),
         repeat: count("repeat"),
         jobs: count("jobs"),
         threads: count("threads"),

@@ -1,7 +1,7 @@
 //! `depthplanes demo`: a made-up scene through the whole pipeline, into files to look at.
 
-use super::make_folder;
 use crate::failure::Outcome;
+use crate::folders::make_folder;
 use crate::run::{Recipe, Runner};
 use crate::{load, show};
 use depthplanes::Intrinsics;

@@ -1,8 +1,8 @@
 //! `depthplanes detect`: maps in, planes out as a table, as JSON or as files.
 
-use super::{make_folder, refuse_file};
 use crate::args::Detect;
 use crate::failure::{Failure, Outcome, note};
+use crate::folders::{make_folder, refuse_file};
 use crate::inputs::{self, Input};
 use crate::run::{Recipe, Runner};
 use crate::{load, pool, show};

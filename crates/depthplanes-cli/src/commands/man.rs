@@ -1,8 +1,8 @@
 //! `depthplanes man`: the manual pages.
 
-use super::make_folder;
 use crate::args;
 use crate::failure::Outcome;
+use crate::folders::make_folder;
 use depthplanes_io::outputs::write_file;
 use std::io::Write;
 use std::path::Path;

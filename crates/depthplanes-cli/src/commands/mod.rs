@@ -12,9 +12,8 @@ mod noise;
 mod score;
 
 use crate::args::Command;
-use crate::failure::{Failure, Outcome};
+use crate::failure::Outcome;
 use std::io::Write;
-use std::path::Path;
 
 /// Runs a command; `out` is standard output.
 pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
@@ -37,23 +36,4 @@ pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
         Command::Completions { shell } => completions::run(*shell, out),
         Command::Man { out_dir } => man::run(out_dir.as_deref(), out),
     }
-}
-
-/// Makes a folder for results, if it is not there yet.
-///
-/// # Errors
-/// A file of that name, or a disk that refuses.
-pub(crate) fn make_folder(folder: &Path) -> Outcome {
-    refuse_file(folder)?;
-    let failed = |error| Failure::machine(format!("{}: the folder cannot be made: {error}", folder.display()));
-    std::fs::create_dir_all(folder).map_err(failed)
-}
-
-/// Refuses a file where a folder is needed.
-fn refuse_file(folder: &Path) -> Outcome {
-    // In this order, since another job may be making the folder right now.
-    if folder.exists() && !folder.is_dir() {
-        return Err(Failure::request(format!("{}: --out-dir needs a folder, this is a file", folder.display())));
-    }
-    Ok(())
 }

@@ -10,37 +10,17 @@ mod peers;
 mod report;
 mod rows;
 mod task;
+mod tasks;
 
 use crate::args::Eval;
-use crate::failure::{Failure, Outcome, note};
-use crate::pool;
+use crate::failure::{Failure, Outcome};
 use crate::run::Recipe;
 use datasets::Item;
-use indicatif::{ProgressBar, ProgressStyle};
-use report::Section;
-use rows::{Key, Row, Store};
+use rows::Row;
 use std::collections::HashSet;
 use std::io::Write;
 use std::path::Path;
-use task::{Maker, Task};
-
-/// Folder of the label images within the report's.
-const LABELS: &str = "labels";
-
-/// A method with parameters, and what it is called in the report.
-struct Entry {
-    label: String,
-    recipe: Recipe,
-}
-
-/// How often and how much at a time.
-#[derive(Clone, Copy)]
-struct Pace {
-    /// Timed runs after a warm-up.
-    repeat: usize,
-    /// Maps at the same time.
-    jobs: usize,
-}
+use tasks::{Entry, Pace};
 
 pub(crate) fn run(wanted: &Eval, out: &mut dyn Write) -> Outcome {
     let recipes = Recipe::several(&wanted.methods, &wanted.parameters, wanted.threads)?;
@@ -49,26 +29,14 @@ pub(crate) fn run(wanted: &Eval, out: &mut dyn Write) -> Outcome {
     let items = items(&wanted.datasets, wanted.data.as_deref())?;
     let pace = Pace { repeat: wanted.repeat, jobs: wanted.jobs };
     let peers = peers::find(&wanted.peers, wanted.threads)?;
-    let mut tasks = tasks(&items, &entries, pace.repeat);
-    tasks.extend(peers::tasks(&items, &peers, pace.repeat));
+    let mut tasks = tasks::of_entries(&items, &entries, pace.repeat);
+    tasks.extend(tasks::of_peers(&items, &peers, pace.repeat));
     // The methods of a map together: what else the machine does in the meantime meets all of them.
     tasks.sort_by_key(|task| std::ptr::from_ref(task.item));
-    let store = make(&tasks, pace, &wanted.report)?;
+    let store = tasks::make(&tasks, pace, &wanted.report)?;
     let rows: Vec<&Row> = tasks.iter().filter_map(|task| store.get(&task.key)).collect();
     let sections = report::by_dataset(&wanted.report, &rows, &items)?;
-    finish("Evaluation", &wanted.report, &rows, &sections, out)
-}
-
-/// Writes the report, and its tables for the terminal.
-fn finish(title: &str, folder: &Path, rows: &[&Row], sections: &[Section], out: &mut dyn Write) -> Outcome {
-    let written = report::write(title, folder, rows, sections)?;
-    write!(out, "{}", report::summary(sections))?;
-    let refused = rows.iter().filter(|row| matches!(row.outcome, rows::Made::Refused(_))).count();
-    if refused > 0 {
-        note(&format!("{refused} of {} results are refusals; the report says why", rows.len()));
-    }
-    writeln!(out, "wrote {}", written.join(", "))?;
-    Ok(())
+    report::write("Evaluation", &wanted.report, &rows, &sections, out)
 }
 
 /// The maps of all sets.
@@ -89,53 +57,4 @@ fn items(words: &[String], data: Option<&Path>) -> Outcome<Vec<Item>> {
         }
         None => Ok(items),
     }
-}
-
-/// Every map by every method, the methods of a map together.
-fn tasks<'a>(items: &'a [Item], entries: &'a [Entry], repeat: usize) -> Vec<Task<'a>> {
-    let task = |(item, entry): (&'a Item, &'a Entry)| {
-        let key = Key {
-            dataset: item.dataset.clone(),
-            map: item.name.clone(),
-            label: entry.label.clone(),
-            method: entry.recipe.method.name.into(),
-            parameters: entry.recipe.written(),
-            version: env!("CARGO_PKG_VERSION").into(),
-            repeat,
-        };
-        Task { item, maker: Maker::Recipe(&entry.recipe), key }
-    };
-    items.iter().flat_map(|item| entries.iter().map(move |entry| (item, entry))).map(task).collect()
-}
-
-/// Does the tasks that have no row yet; each row is kept as soon as it is made.
-///
-/// # Errors
-/// A folder that cannot be written to, a map that cannot be read.
-fn make(tasks: &[Task<'_>], pace: Pace, folder: &Path) -> Outcome<Store> {
-    crate::commands::make_folder(&folder.join(LABELS))?;
-    let mut store = Store::open(&folder.join("rows.jsonl"))?;
-    let open: Vec<&Task<'_>> = tasks.iter().filter(|task| !task.is_done(&store, folder)).collect();
-    if open.len() < tasks.len() {
-        note(&format!(
-            "{}: {} of {} results are there already",
-            folder.display(),
-            tasks.len() - open.len(),
-            tasks.len()
-        ));
-    }
-    let bar = ProgressBar::new(open.len() as u64);
-    bar.set_style(ProgressStyle::with_template("{bar:30} {pos}/{len} {eta} {msg}").expect("a fixed template"));
-    let machine = machine::name();
-    let worker = || {
-        let (machine, open) = (&machine, &open);
-        move |at: usize| open[at].run(folder, machine, pace.jobs)
-    };
-    pool::in_order(open.len(), pace.jobs, worker, |at, row| {
-        bar.set_message(format!("{} {}", open[at].key.map, open[at].key.label));
-        bar.inc(1);
-        store.add(row?)
-    })?;
-    bar.finish_and_clear();
-    Ok::<Store, Failure>(store)
 }

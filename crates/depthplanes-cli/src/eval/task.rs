@@ -1,6 +1,5 @@
 //! One map by one method: found, timed, scored, its labels written.
 
-use super::LABELS;
 use super::datasets::{Item, TruthOf};
 use super::machine;
 use super::peers::Peer;
@@ -14,6 +13,9 @@ use depthplanes_io::Frame;
 use depthplanes_io::outputs::{Spread, grey16_png, write_file};
 use std::collections::BTreeMap;
 use std::path::Path;
+
+/// Folder of the label images within the report's.
+pub(super) const LABELS: &str = "labels";
 
 /// A map and a method.
 pub(super) struct Task<'a> {

@@ -3,8 +3,8 @@
 //! In: a BMP file, bottom-up or top-down. Out: `u8` values: the palette's grey, not its index.
 
 use super::bytes::Cursor;
+use super::format::{DecodeOptions, Format, Image};
 use super::samples::single_channel;
-use super::{DecodeOptions, Format, Image};
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
 

@@ -8,7 +8,8 @@
 use depthplanes::Measure;
 
 use super::bytes::Cursor;
-use super::{DecodeOptions, Format, Image, png, rvl};
+use super::format::{DecodeOptions, Format, Image};
+use super::{png, rvl};
 use crate::error::{Error, Result};
 
 pub(super) const FORMAT: Format = Format {

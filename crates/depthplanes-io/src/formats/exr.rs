@@ -8,7 +8,7 @@ use std::io::Cursor;
 use exr::meta::MetaData;
 use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
 
-use super::{DecodeOptions, Format, Image};
+use super::format::{DecodeOptions, Format, Image};
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
 

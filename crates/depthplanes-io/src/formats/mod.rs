@@ -12,6 +12,7 @@ mod bytes;
 mod compressed_depth;
 #[cfg(feature = "exr")]
 mod exr;
+mod format;
 mod lzf;
 mod npy;
 mod npz;
@@ -28,95 +29,9 @@ mod tiff;
 mod unsupported;
 
 pub use compressed_depth::inverse_depth_measure;
+pub use format::{DecodeOptions, Format, Image, Limits};
 
 use crate::error::{Error, Result};
-use crate::frame::Pixels;
-
-/// What an untrusted file may ask for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// Most pixels of a map; 2^27 (134 million) by default.
-    pub max_pixels: usize,
-    /// Most bytes of a file, and of its decoded samples; 2^30 (1 GiB) by default.
-    pub max_bytes: usize,
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        Limits { max_pixels: 1 << 27, max_bytes: 1 << 30 }
-    }
-}
-
-impl Limits {
-    /// Number of pixels of a map of the stated size.
-    ///
-    /// # Errors
-    /// [`Error::Limit`] above [`Limits::max_pixels`], or if `sample_bytes` each exceed
-    /// [`Limits::max_bytes`]; [`Error::Unreadable`] for a side of 0 or above 65535.
-    pub fn area(&self, format: &'static str, width: u64, height: u64, sample_bytes: usize) -> Result<usize> {
-        let side = 1..=depthplanes::map::MAX_SIDE as u64;
-        if !side.contains(&width) || !side.contains(&height) {
-            return Err(Error::Unreadable {
-                format,
-                wrong: format!("the header states {width} x {height} pixels"),
-                accepted: "sides of 1 to 65535 pixels",
-            });
-        }
-        let area = width * height;
-        if area > self.max_pixels as u64 {
-            return Err(Error::Limit { what: "number of pixels", given: area, limit: self.max_pixels as u64 });
-        }
-        let bytes = area.saturating_mul(sample_bytes as u64);
-        if bytes > self.max_bytes as u64 {
-            return Err(Error::Limit { what: "number of decoded bytes", given: bytes, limit: self.max_bytes as u64 });
-        }
-        Ok(area as usize)
-    }
-}
-
-/// What a reader may need to know beside the bytes.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct DecodeOptions {
-    /// What the file may ask for.
-    pub limits: Limits,
-    /// The array to read from an `.npz` archive that holds several.
-    pub member: Option<String>,
-    /// Columns and rows of a headerless file; stating them selects the format `raw`.
-    pub raw_size: Option<(usize, usize)>,
-    /// Whether a colour bitmap (BMP) becomes its luminance instead of being refused: label images with a colour for each
-    /// plane.
-    pub luminance: bool,
-}
-
-/// A map as it stands in the file, before anything is said of its unit.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Image {
-    /// Columns.
-    pub width: usize,
-    /// Rows.
-    pub height: usize,
-    /// The values, row by row, top row first.
-    pub pixels: Pixels,
-    /// Sample type in the file, in numpy's words: `uint16`, `float32` ...
-    pub sample: &'static str,
-    /// What a person should know: channels dropped, numbers converted.
-    pub warnings: Vec<String>,
-}
-
-/// One input format.
-#[derive(Clone, Copy, Debug)]
-pub struct Format {
-    /// Its name, as in [`crate::Frame::format`].
-    pub name: &'static str,
-    /// One line for the table of formats.
-    pub about: &'static str,
-    /// Usual file name extensions, for file dialogs and directory scans only.
-    pub extensions: &'static [&'static str],
-    /// Whether the bytes claim to be this format.
-    pub sniff: fn(&[u8]) -> bool,
-    /// Reads the map.
-    pub decode: fn(&[u8], &DecodeOptions) -> Result<Image>,
-}
 
 /// All input formats, in the order in which they are tried; the weakest signature comes last.
 pub const FORMATS: &[Format] = &[

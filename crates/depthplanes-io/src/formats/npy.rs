@@ -8,8 +8,8 @@
 use std::borrow::Cow;
 
 use super::bytes::Cursor;
+use super::format::{Format, Image, Limits};
 use super::samples::{Sample, pixels};
-use super::{Format, Image, Limits};
 use crate::error::{Error, Result};
 
 pub(super) const FORMAT: Format = Format {

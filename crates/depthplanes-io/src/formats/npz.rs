@@ -10,7 +10,8 @@ use flate2::Crc;
 use flate2::read::DeflateDecoder;
 
 use super::bytes::Cursor;
-use super::{DecodeOptions, Format, Image, Limits, npy};
+use super::format::{DecodeOptions, Format, Image, Limits};
+use super::npy;
 use crate::error::{Error, Result};
 
 pub(super) const FORMAT: Format = Format {

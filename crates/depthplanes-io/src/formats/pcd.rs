@@ -5,8 +5,9 @@
 //! no image to find planes in and is refused.
 
 use super::bytes::{Cursor, line};
+use super::format::{DecodeOptions, Format, Image};
+use super::lzf;
 use super::samples::{Sample, pixels};
-use super::{DecodeOptions, Format, Image, lzf};
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
 

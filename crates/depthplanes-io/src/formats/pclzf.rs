@@ -5,8 +5,9 @@
 //! factor). Only the type `depth16` is a map; `rgb24` and the others are refused.
 
 use super::bytes::Cursor;
+use super::format::{DecodeOptions, Format, Image};
+use super::lzf;
 use super::samples::{Sample, pixels};
-use super::{DecodeOptions, Format, Image, lzf};
 use crate::error::{Error, Result};
 
 pub(super) const FORMAT: Format = Format {

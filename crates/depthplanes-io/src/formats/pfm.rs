@@ -5,8 +5,8 @@
 //! is ignored, as every loader of these data sets does, with a warning unless it is 1.
 
 use super::bytes::header_words;
+use super::format::{DecodeOptions, Format, Image};
 use super::samples::{Sample, pixels, single_channel};
-use super::{DecodeOptions, Format, Image};
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
 

@@ -7,8 +7,8 @@ use std::io::Cursor;
 
 use png::{BitDepth, ColorType, Decoder, DecodingError, Reader, Transformations};
 
+use super::format::{DecodeOptions, Format, Image};
 use super::samples::single_channel;
-use super::{DecodeOptions, Format, Image};
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
 

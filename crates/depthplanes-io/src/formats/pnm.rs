@@ -4,8 +4,8 @@
 //! maxval 255, `u16` above, as stored (not stretched to the full range).
 
 use super::bytes::header_words;
+use super::format::{DecodeOptions, Format, Image};
 use super::samples::{Sample, pixels, single_channel};
-use super::{DecodeOptions, Format, Image};
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
 

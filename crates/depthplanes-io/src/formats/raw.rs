@@ -3,8 +3,8 @@
 //! In: exactly `2 * width * height` bytes and the size, which nothing in the file can say. Out:
 //! `u16` values. Big-endian samples are read with the option to swap bytes.
 
+use super::format::{DecodeOptions, Format, Image};
 use super::samples::{Sample, pixels};
-use super::{DecodeOptions, Format, Image};
 use crate::error::{Error, Result};
 
 pub(super) const FORMAT: Format = Format {

@@ -6,7 +6,7 @@
 //! says whether another follows; eight such nibbles make a little-endian word, first nibble highest.
 
 use super::bytes::Cursor;
-use super::{DecodeOptions, Format, Image};
+use super::format::{DecodeOptions, Format, Image};
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
 

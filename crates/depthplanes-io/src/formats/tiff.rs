@@ -8,8 +8,8 @@ use std::io::Cursor;
 use tiff::decoder::{Decoder, DecodingResult, Limits as TiffLimits};
 use tiff::{ColorType, TiffError};
 
+use super::format::{DecodeOptions, Format, Image};
 use super::samples::{half, integers, single_channel};
-use super::{DecodeOptions, Format, Image};
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
 

@@ -4,7 +4,9 @@
 //! optical frame: x right, y down, z forward.
 
 use super::colour::palette;
-use super::{Output, OutputError, Report, Writer, shade};
+use super::error::OutputError;
+use super::output::{Output, Report, Writer};
+use super::shade;
 use depthplanes::with_view;
 
 pub(super) const OUTPUT: Output = Output {

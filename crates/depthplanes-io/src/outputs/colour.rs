@@ -16,6 +16,9 @@ const TURN: usize = 21;
 /// How much darker every second turn is.
 const DARKER: f64 = 0.07;
 
+/// Share of the plane's colour in pictures; the rest is the map's grey, so that relief stays visible.
+pub(super) const COLOUR_SHARE: f32 = 0.58;
+
 /// The colour of a label in overlays and clouds, sRGB. Label 0, no plane, is black.
 pub fn colour(label: u16) -> [u8; 3] {
     if label == 0 {

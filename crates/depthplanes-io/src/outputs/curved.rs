@@ -1,8 +1,9 @@
 //! The label image of curved regions: 0 where there is none, otherwise the region's label, 16 bits.
 
+use super::error::OutputError;
 use super::npy::npy_of;
+use super::output::{Output, Report, Writer};
 use super::picture::grey16_png;
-use super::{Output, OutputError, Report, Writer};
 use depthplanes::detection::Curved;
 
 pub(super) const OUTPUT: Output = Output {

@@ -3,7 +3,8 @@
 //! Bytes go to a hidden file beside the target, which then takes the target's name in one step.
 //! Whatever fails, the hidden file is removed and what stood there before stays.
 
-use super::{Output, OutputError, Report};
+use super::error::OutputError;
+use super::output::{Output, Report};
 use std::collections::HashMap;
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions};

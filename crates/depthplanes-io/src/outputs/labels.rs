@@ -3,8 +3,8 @@
 //! PNG opens anywhere and is small; NPY is what NumPy and the EVOPS tools take.
 
 use super::npy::npy_of;
+use super::output::{Output, Writer};
 use super::picture::grey16_png;
-use super::{Output, Writer};
 use depthplanes::Detection;
 
 pub(super) const OUTPUT: Output = Output {

@@ -1,7 +1,8 @@
 //! The legend: a column beside the picture, and small numbers on the planes it names.
 
+use super::colour::colour;
+use super::font;
 use super::picture::Picture;
-use super::{colour, font};
 use depthplanes::{Detection, Plane};
 
 const PAPER: [u8; 3] = [38, 38, 44];

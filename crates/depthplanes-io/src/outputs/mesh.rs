@@ -4,7 +4,9 @@
 //! on the fitted planes; faces turn counter-clockwise seen from the camera. Planes that are not
 //! known in metres, or reach infinity, are left out.
 
-use super::{Output, OutputError, Report, Writer, colour};
+use super::colour::colour;
+use super::error::OutputError;
+use super::output::{Output, Report, Writer};
 use depthplanes::outline::{Outliner, Outlines, Polygon};
 use earcut::Earcut;
 

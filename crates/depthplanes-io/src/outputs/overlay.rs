@@ -4,9 +4,11 @@
 //! With a legend the picture grows to the right; without, it has exactly the map's size. The scene
 //! itself is never covered, but for the small numbers that the legend refers to.
 
-use super::colour::palette;
+use super::colour::{COLOUR_SHARE, palette};
+use super::error::OutputError;
+use super::output::{Output, Report, Writer};
 use super::picture::{Picture, blend};
-use super::{Output, OutputError, Report, Writer, legend, lines, shade};
+use super::{legend, lines, shade};
 use depthplanes::Detection;
 
 pub(super) const OUTPUT: Output = Output {
@@ -18,8 +20,6 @@ pub(super) const OUTPUT: Output = Output {
     writers: &[Writer { extension: "png", encode: |report| Ok(picture(report)?.png()) }],
 };
 
-/// Share of the plane's colour; the rest is the map's grey, so that relief stays visible.
-pub(super) const COLOUR_SHARE: f32 = 0.58;
 /// How much an outline is darker than its plane.
 const OUTLINE_SHARE: f32 = 0.5;
 

@@ -1,7 +1,7 @@
 //! The planes as text: JSON with everything that is known of the frame, or CSV with one line a plane.
 
+use super::output::{Output, Report, Writer};
 use super::record::FrameRecord;
-use super::{Output, Report, Writer};
 use depthplanes::Plane;
 use serde_json::Value;
 use std::fmt::Write;

@@ -1,7 +1,8 @@
 //! The frame's record as it stands in JSON; docs/planes-schema.md describes each field.
 
 use super::outline::OutlineRecord;
-use super::{Report, Spread, Times};
+use super::output::Report;
+use super::times::{Spread, Times};
 use depthplanes::detection::{CurvedRegion, PixelBox};
 use depthplanes::methods::ParamKind;
 use depthplanes::{Coplanar, CovarianceSource, Intrinsics, Measure, Plane};

@@ -4,7 +4,7 @@
 //! structured light is even. The range runs from the 2nd to the 98th percentile, so that a few
 //! wild pixels do not flatten the rest.
 
-use crate::Frame;
+use crate::frame::Frame;
 use depthplanes::{Measure, with_view};
 
 /// Missing pixels: darker than any depth, and slightly blue so as to differ from far.

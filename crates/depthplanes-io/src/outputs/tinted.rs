@@ -1,10 +1,10 @@
 //! Small pictures of label images over their map, one or several side by side, for reports.
 
-use super::colour::palette;
-use super::overlay::COLOUR_SHARE;
+use super::colour::{COLOUR_SHARE, palette};
+use super::error::OutputError;
 use super::picture::{Picture, blend};
-use super::{OutputError, font, shade};
-use crate::Frame;
+use super::{font, shade};
+use crate::frame::Frame;
 
 /// A PNG of at most `width` columns: the map in grey, each label (1 and up) in a colour of its own. `labels` has an entry
 /// for each pixel of the map, row by row. Pixels with a value and without a label are in the colour `rest`, if there is one.

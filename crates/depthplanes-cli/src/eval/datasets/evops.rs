@@ -1,6 +1,7 @@
 //! Folders in the layout of EVOPS: depth beside labels, as of ICL-NUIM and TUM.
 
-use super::{Dataset, Item, beside_labels};
+use super::dataset::{Dataset, Item};
+use super::folder::beside_labels;
 use crate::failure::Outcome;
 use std::path::Path;
 

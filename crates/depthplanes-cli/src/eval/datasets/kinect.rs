@@ -1,6 +1,7 @@
 //! Folders of depth frames without a truth: of a Kinect, TUM, 7-Scenes, CAPE, or one's own.
 
-use super::{Dataset, Item, files, name_of, options, reading};
+use super::dataset::{Dataset, Item};
+use super::folder::{files, name_of, options, reading};
 use crate::failure::Outcome;
 use depthplanes_io::camera_file::{CameraFile, read_camera};
 use std::path::{Path, PathBuf};

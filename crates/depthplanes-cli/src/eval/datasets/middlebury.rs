@@ -1,6 +1,7 @@
 //! Middlebury's stereo maps: those of the paper and others.
 
-use super::{Dataset, Item, files, name_of, options, reading, truth};
+use super::dataset::{Dataset, Item};
+use super::folder::{files, name_of, options, reading, truth};
 use crate::failure::{Failure, Outcome};
 use crate::natural;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,7 @@
 //! NYU frames with planes drawn by the authors of DPD; grey levels, near is bright.
 
-use super::{Dataset, Item, files, name_of, needed, options, truth};
+use super::dataset::{Dataset, Item};
+use super::folder::{files, name_of, needed, options, truth};
 use crate::failure::Outcome;
 use depthplanes::Measure;
 use depthplanes::noise::SensorNoise;

@@ -3,7 +3,8 @@
 //! A frame's JSON file states how it is read, in the flags of `detect`, and its sensor's preset. `real` reads it by the
 //! flags alone, as somebody does who knows the camera and nothing of the noise; `real-presets` adds the preset.
 
-use super::{Dataset, Item, Load, TruthOf, files, name_of, needed, reading};
+use super::dataset::{Dataset, Item, Load, TruthOf};
+use super::folder::{files, name_of, needed, reading};
 use crate::args::Reading;
 use crate::failure::{Failure, Outcome};
 use crate::load;

@@ -1,6 +1,6 @@
 //! Made-up scenes with exact truth: `scene:SPEC`, of which `seed=A-B` makes one for each seed.
 
-use super::{Item, TruthOf};
+use super::dataset::{Item, TruthOf};
 use crate::failure::{Failure, Outcome};
 use crate::load;
 use depthplanes::scene::Spec;

@@ -1,6 +1,7 @@
 //! SegComp's ABW test images: polyhedra on a table, by a structured-light scanner.
 
-use super::{Dataset, Item, files, name_of, needed, reading, truth};
+use super::dataset::{Dataset, Item};
+use super::folder::{files, name_of, needed, reading, truth};
 use crate::failure::Outcome;
 use depthplanes::Intrinsics;
 use depthplanes_io::ReadOptions;

@@ -1,6 +1,7 @@
 //! Frames of a SwissRanger SR4000 with planes drawn by the authors of DPD.
 
-use super::{Dataset, Item, Load, TruthOf, files, name_of, options, reading};
+use super::dataset::{Dataset, Item, Load, TruthOf};
+use super::folder::{files, name_of, options, reading};
 use crate::failure::{Failure, Outcome};
 use depthplanes::noise::SensorNoise;
 use depthplanes_io::formats::DecodeOptions;

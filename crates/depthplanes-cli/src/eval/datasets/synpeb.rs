@@ -1,6 +1,7 @@
 //! SynPEB's made-up scans, as pinhole depth.
 
-use super::{Dataset, Item, beside_labels};
+use super::dataset::{Dataset, Item};
+use super::folder::beside_labels;
 use crate::failure::Outcome;
 use std::path::Path;
 

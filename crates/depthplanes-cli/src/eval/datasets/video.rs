@@ -1,7 +1,8 @@
 //! Frames of a recording in their order, without a truth: how steady the planes are is measured from frame to frame.
 
+use super::dataset::{Dataset, Item};
+use super::folder::{files, name_of, options, reading};
 use super::kinect::{MISSING, camera};
-use super::{Dataset, Item, files, name_of, options, reading};
 use crate::failure::Outcome;
 use depthplanes::Intrinsics;
 use std::path::{Path, PathBuf};

@@ -4,7 +4,7 @@ use super::super::report::table::Table;
 use super::super::report::{Section, by, mean, share};
 use super::super::rows::{Found, Row};
 use super::figures::of_map;
-use super::{COMPARED, NGAF, Results, label};
+use super::trial::{COMPARED, NGAF, Results, label};
 
 /// A number that the paper gives for `ngaf` against another method.
 struct Claim {

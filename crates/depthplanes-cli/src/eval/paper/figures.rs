@@ -4,7 +4,7 @@ use super::super::report::plots::{self, Line};
 use super::super::report::table::{self, Table};
 use super::super::report::{Section, by, found, in_order, mean, share};
 use super::super::rows::{Found, Row};
-use super::{COMPARED, MINS, NGAF, Results, label};
+use super::trial::{COMPARED, MINS, NGAF, Results, label};
 use crate::failure::Outcome;
 use std::path::Path;
 

@@ -6,13 +6,12 @@
 mod claims;
 mod figures;
 mod maps;
+mod trial;
 mod truth;
 
-use super::datasets::Item;
-use super::report::plots::Plot;
-use super::report::strips;
+use super::report;
 use super::rows::Row;
-use super::{Entry, Pace, finish, make, tasks};
+use super::tasks::{self, Entry, Pace};
 use crate::args::Paper;
 use crate::failure::{Outcome, note};
 use crate::run::Recipe;
@@ -20,13 +19,7 @@ use maps::{KINECT, MIDDLEBURY, Source};
 use std::io::Write;
 use std::iter::once;
 use std::path::Path;
-
-/// The paper's own method.
-const NGAF: &str = "ngaf";
-/// A plane has more pixels than this: the paper's four values, section 3d.
-const MINS: [u32; 4] = [32, 64, 128, 256];
-/// That of them at which methods are compared. Our choice: the paper names none.
-const COMPARED: u32 = 64;
+use trial::{MINS, NGAF, Results, Trial, is_compared, label};
 
 /// What has to be said of `ngaf` on depth.
 const OF_DEPTH: &str = "\n\nThe steps of a Kinect's own grow with the square of the distance: about 2 mm at 0.8 m, 11 mm at 2 m \
@@ -46,28 +39,15 @@ const CLEAN: Settings = Settings { theta: 1.0, window: 0.0 };
 /// Maps of sensors: theta 2 (section 3c), gaps filled (section 3b).
 const SENSOR: Settings = Settings { theta: 2.0, window: 5.0 };
 
-/// Maps, and what is run on them.
-struct Trial {
-    /// Stands for the set in the rows.
-    name: &'static str,
-    items: Vec<Item>,
-    entries: Vec<Entry>,
-}
-
-/// What came of a trial.
-struct Results<'a> {
-    trial: &'a Trial,
-    rows: Vec<&'a Row>,
-}
-
 pub(crate) fn run(wanted: &Paper, out: &mut dyn Write) -> Outcome {
     let data = maps::folder(wanted.data.as_deref())?;
     let sources = maps::sources(data.as_deref());
     tell_made_up(&sources, data.as_deref());
     let trials = trials(wanted, &sources, data.as_deref())?;
     let pace = Pace { repeat: wanted.repeat, jobs: wanted.jobs };
-    let all: Vec<_> = trials.iter().flat_map(|trial| tasks(&trial.items, &trial.entries, pace.repeat)).collect();
-    let store = make(&all, pace, &wanted.report)?;
+    let all: Vec<_> =
+        trials.iter().flat_map(|trial| tasks::of_entries(&trial.items, &trial.entries, pace.repeat)).collect();
+    let store = tasks::make(&all, pace, &wanted.report)?;
     let rows: Vec<&Row> = all.iter().filter_map(|task| store.get(&task.key)).collect();
     let [middlebury, kinect, disparity, depth] = trials.each_ref().map(|trial| {
         let rows = rows.iter().copied().filter(|row| row.key.dataset == trial.name).collect();
@@ -84,7 +64,7 @@ pub(crate) fn run(wanted: &Paper, out: &mut dyn Write) -> Outcome {
         claims::section(&middlebury, &kinect),
         truth::section(folder, &[&disparity, &depth])?,
     ];
-    finish("The paper's protocol", folder, &rows, &sections, out)
+    report::write("The paper's protocol", folder, &rows, &sections, out)
 }
 
 /// A note if maps are not there.
@@ -128,35 +108,4 @@ fn entries(methods: &[String], settings: Settings, threads: usize) -> Outcome<Ve
     }
     entries.sort_by_key(|entry| methods.iter().position(|name| name == entry.recipe.method.name));
     Ok(entries)
-}
-
-/// What a method with a `min` is called in the report.
-fn label(method: &str, min: u32) -> String {
-    format!("{method} min {min}")
-}
-
-fn is_compared(label: &str) -> bool {
-    label.ends_with(&format!(" min {COMPARED}"))
-}
-
-impl<'a> Results<'a> {
-    /// Those of one method.
-    fn of(&self, method: &str) -> Vec<&'a Row> {
-        self.rows.iter().copied().filter(|row| row.key.method == method).collect()
-    }
-
-    /// Those that methods are compared by.
-    fn compared(&self) -> Vec<&'a Row> {
-        self.rows.iter().copied().filter(|row| is_compared(&row.key.label)).collect()
-    }
-
-    /// A strip for each map.
-    fn strips(&self, folder: &Path, rows: &[&Row], rest: Option<[u8; 3]>) -> Outcome<Vec<strips::Strip>> {
-        strips::of_maps(folder, rows, self.trial.items.iter(), rest)
-    }
-
-    /// A plot with the trial's name in its caption.
-    fn plot(&self, plot: Option<Plot>) -> Option<Plot> {
-        plot.map(|plot| plot.of(self.trial.name))
-    }
 }

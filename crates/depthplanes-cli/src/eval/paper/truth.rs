@@ -5,7 +5,7 @@ use super::super::report::plots;
 use super::super::report::{Section, by, in_order, mean, share, strips, table};
 use super::super::rows::{Found, Row};
 use super::maps::{MIDDLEBURY, Source};
-use super::{COMPARED, MINS, NGAF, Results, label};
+use super::trial::{COMPARED, MINS, NGAF, Results, label};
 use crate::failure::Outcome;
 use std::path::Path;
 

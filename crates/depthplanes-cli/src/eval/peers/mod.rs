@@ -6,9 +6,6 @@
 mod exchange;
 mod process;
 
-use super::datasets::Item;
-use super::rows::Key;
-use super::task::{Maker, Task};
 use crate::failure::{Failure, Outcome};
 use depthplanes::Detection;
 use depthplanes::methods::METHODS;
@@ -20,7 +17,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Somebody else's method.
 pub(super) struct Peer {
-    listed: Listed,
+    pub(super) listed: Listed,
     /// Shared by all methods that one program has.
     process: Arc<Mutex<Process>>,
 }
@@ -28,12 +25,12 @@ pub(super) struct Peer {
 /// What a program says of a method that it has.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Listed {
-    name: String,
+pub(super) struct Listed {
+    pub(super) name: String,
     /// Package and version, as in `open3d 0.20.0`.
-    version: String,
+    pub(super) version: String,
     /// Every parameter with its value, as it is to be read in the report.
-    parameters: String,
+    pub(super) parameters: String,
 }
 
 /// What a program answers to `{"list":true}`.
@@ -92,17 +89,6 @@ pub(super) fn find(commands: &[String], threads: usize) -> Outcome<Vec<Peer>> {
         }
     }
     Ok(peers)
-}
-
-/// Every map by every peer.
-pub(super) fn tasks<'a>(items: &'a [Item], peers: &'a [Peer], repeat: usize) -> Vec<Task<'a>> {
-    let task = |(item, peer): (&'a Item, &'a Peer)| {
-        let Listed { name, version, parameters } = peer.listed.clone();
-        let (dataset, map) = (item.dataset.clone(), item.name.clone());
-        let key = Key { dataset, map, label: name.clone(), method: name, parameters, version, repeat };
-        Task { item, maker: Maker::Peer(peer), key }
-    };
-    items.iter().flat_map(|item| peers.iter().map(move |peer| (item, peer))).map(task).collect()
 }
 
 impl Peer {

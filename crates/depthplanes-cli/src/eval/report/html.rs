@@ -1,8 +1,9 @@
 //! The report as one page of HTML that needs nothing else.
 
+use super::page::{Page, Section};
 use super::plots::Plot;
+use super::strips::{Picture, Strip};
 use super::table::Table;
-use super::{Page, Section};
 use crate::table::Align;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -64,8 +65,8 @@ fn table(table: &Table) -> String {
     format!("<table><thead><tr>{}</tr></thead>\n<tbody>{rows}</tbody></table>\n", cells("th", &table.head))
 }
 
-fn strip(strip: &super::strips::Strip) -> String {
-    let picture = |picture: &super::strips::Picture| {
+fn strip(strip: &Strip) -> String {
+    let picture = |picture: &Picture| {
         let caption = safe(&picture.caption);
         let png = STANDARD.encode(&picture.png);
         format!(

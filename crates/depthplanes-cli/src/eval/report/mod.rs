@@ -4,39 +4,50 @@
 //! In: the rows, and the maps for their pictures. Out: files, each written whole.
 
 mod html;
+mod names;
+mod numbers;
+mod page;
 pub(super) mod plots;
 mod sequence;
 pub(super) mod strips;
 pub(super) mod table;
 
+pub(super) use names::in_order;
+pub(super) use numbers::{by, found, mean, share};
+pub(super) use page::Section;
+
 use super::datasets::Item;
-use super::rows::{Found, Made, Row};
-use crate::failure::Outcome;
+use super::rows::{Made, Row};
+use crate::failure::{Outcome, note};
 use depthplanes_io::outputs::write_file;
-use plots::Plot;
+use page::Page;
+use std::io::Write;
 use std::path::Path;
-use strips::Strip;
 use table::Table;
 
 /// The version that our own rows are of.
 const OWN: &str = env!("CARGO_PKG_VERSION");
 
-/// A part of a report.
-#[derive(Default)]
-pub(super) struct Section {
-    pub(super) title: String,
-    /// What it is about, paragraphs with an empty line between; empty for nothing.
-    pub(super) text: String,
-    pub(super) tables: Vec<Table>,
-    pub(super) plots: Vec<Plot>,
-    pub(super) strips: Vec<Strip>,
+/// Writes the report, and its tables for the terminal.
+///
+/// # Errors
+/// A disk or an output that refuses.
+pub(super) fn write(title: &str, folder: &Path, rows: &[&Row], sections: &[Section], out: &mut dyn Write) -> Outcome {
+    let written = write_files(title, folder, rows, sections)?;
+    write!(out, "{}", summary(sections))?;
+    let refused = rows.iter().filter(|row| matches!(row.outcome, Made::Refused(_))).count();
+    if refused > 0 {
+        note(&format!("{refused} of {} results are refusals; the report says why", rows.len()));
+    }
+    writeln!(out, "wrote {}", written.join(", "))?;
+    Ok(())
 }
 
-/// Writes the report; the names of its files.
+/// Writes the files; their names.
 ///
 /// # Errors
 /// A disk that refuses.
-pub(super) fn write(title: &str, folder: &Path, rows: &[&Row], sections: &[Section]) -> Outcome<Vec<String>> {
+fn write_files(title: &str, folder: &Path, rows: &[&Row], sections: &[Section]) -> Outcome<Vec<String>> {
     let page = Page { title, facts: facts(rows), sections, refusals: refusals(rows) };
     let json = serde_json::to_string_pretty(rows).expect("rows are plain values");
     let tables: Vec<_> = sections.iter().flat_map(|section| &section.tables).map(Table::json).collect();
@@ -58,7 +69,7 @@ pub(super) fn write(title: &str, folder: &Path, rows: &[&Row], sections: &[Secti
 }
 
 /// The tables, for the terminal.
-pub(super) fn summary(sections: &[Section]) -> String {
+fn summary(sections: &[Section]) -> String {
     sections.iter().flat_map(|section| &section.tables).map(|table| table.text() + "\n").collect()
 }
 
@@ -95,15 +106,6 @@ pub(super) fn by_dataset(folder: &Path, rows: &[&Row], items: &[Item]) -> Outcom
     Ok(sections)
 }
 
-/// What is in a report.
-struct Page<'a> {
-    title: &'a str,
-    /// Where, when and how: a heading and a value each.
-    facts: Vec<[String; 2]>,
-    sections: &'a [Section],
-    refusals: Vec<String>,
-}
-
 fn facts(rows: &[&Row]) -> Vec<[String; 2]> {
     let all = |read: &dyn Fn(&Row) -> String| {
         let mut values: Vec<String> = rows.iter().map(|row| read(row)).collect();
@@ -137,50 +139,6 @@ fn values(written: &[String]) -> String {
         format!("{name} {}", values.join(" / "))
     };
     in_order(pairs().map(|(name, _)| name)).into_iter().map(of).collect::<Vec<_>>().join(", ")
-}
-
-/// What the methods are called, in the order in which they were asked for.
-fn labels(rows: &[&Row]) -> Vec<String> {
-    in_order(rows.iter().map(|row| row.key.label.as_str()))
-}
-
-pub(super) fn in_order<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let mut seen: Vec<String> = Vec::new();
-    for name in names {
-        if !seen.iter().any(|other| other == name) {
-            seen.push(name.to_string());
-        }
-    }
-    seen
-}
-
-pub(super) fn found(row: &Row) -> Option<&Found> {
-    match &row.outcome {
-        Made::Found(found) => Some(found),
-        Made::Refused(_) => None,
-    }
-}
-
-/// What a method found.
-pub(super) fn by<'a>(rows: &[&'a Row], label: &str) -> Vec<(&'a Row, &'a Found)> {
-    let own = rows.iter().filter(|row| row.key.label == label);
-    own.filter_map(|row| Some((*row, found(row)?))).collect()
-}
-
-/// The mean of those that have a value.
-pub(super) fn mean(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
-    let known: Vec<f64> = values.flatten().collect();
-    (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
-}
-
-/// Milliseconds for each million pixels.
-fn per_megapixel(row: &Row, found: &Found) -> f64 {
-    found.median_ms / (row.size[0] * row.size[1]) as f64 * 1e6
-}
-
-/// Share of the valid pixels that have a plane.
-pub(super) fn share(row: &Row, found: &Found) -> f64 {
-    found.labelled_pixels as f64 / row.valid_pixels.max(1) as f64
 }
 
 fn refusals(rows: &[&Row]) -> Vec<String> {

@@ -1,7 +1,8 @@
 //! The plots of a report, as SVG.
 
 use super::super::rows::{Found, Row};
-use super::{by, in_order, labels, mean, per_megapixel, share};
+use super::names::{in_order, labels};
+use super::numbers::{by, mean, per_megapixel, share};
 use kuva::prelude::*;
 
 /// A plot with what it shows.

@@ -2,8 +2,9 @@
 
 use super::super::datasets::Item;
 use super::super::rows::Row;
+use super::names::labels;
+use super::numbers::found;
 use super::table::Table;
-use super::{found, labels};
 use crate::failure::Outcome;
 use depthplanes::metrics::Sequence;
 use depthplanes_io::formats::DecodeOptions;

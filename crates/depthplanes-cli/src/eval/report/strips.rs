@@ -2,7 +2,7 @@
 
 use super::super::datasets::Item;
 use super::super::rows::Row;
-use super::found;
+use super::numbers::found;
 use crate::failure::Outcome;
 use depthplanes_io::formats::DecodeOptions;
 use depthplanes_io::outputs::tinted_png;

@@ -1,7 +1,8 @@
 //! The tables of a report: a line for each method, a table for each set.
 
 use super::super::rows::{Found, Row};
-use super::{by, labels, mean, per_megapixel, share};
+use super::names::labels;
+use super::numbers::{self, by, mean, per_megapixel, share};
 use crate::table::{Align, aligned};
 
 /// A table with a heading row.
@@ -147,7 +148,7 @@ const COLUMNS: &[Column] = &[
 
 /// The columns of what is known of these rows.
 fn columns(rows: &[&Row]) -> Vec<&'static Column> {
-    let truth = |row: &&Row| match super::found(row) {
+    let truth = |row: &&Row| match numbers::found(row) {
         Some(found) if scored(found, "surfaces.all").is_some() => Truth::Partial,
         Some(found) if !found.scores.is_empty() => Truth::Whole,
         _ => Truth::None,
@@ -180,7 +181,7 @@ pub(super) fn by_map(title: &str, rows: &[&Row]) -> Option<Table> {
         return None;
     }
     let line = |row: &&Row| {
-        let found: Vec<_> = super::found(row).map(|found| (*row, found)).into_iter().collect();
+        let found: Vec<_> = numbers::found(row).map(|found| (*row, found)).into_iter().collect();
         let first = [row.key.map.clone(), row.key.label.clone()];
         first.into_iter().chain(columns.iter().map(|column| column.written(&found))).collect()
     };
@@ -214,8 +215,8 @@ pub(super) fn csv(rows: &[&Row]) -> String {
             [&key.dataset, &key.map, &key.label, &key.method, &key.parameters, &key.version, &row.machine, &row.date];
         let mut cells: Vec<String> = named.into_iter().map(|cell| quoted(cell)).collect();
         cells.extend([row.jobs, key.repeat, row.size[0], row.size[1]].map(|number| number.to_string()));
-        cells.push(super::found(row).map_or(String::new(), |found| found.least_ms.to_string()));
-        let value = |column: &Column| super::found(row).and_then(|found| column.of(&[(row, found)]));
+        cells.push(numbers::found(row).map_or(String::new(), |found| found.least_ms.to_string()));
+        let value = |column: &Column| numbers::found(row).and_then(|found| column.of(&[(row, found)]));
         cells.extend(COLUMNS.iter().map(|column| value(column).map_or(String::new(), |value| value.to_string())));
         text += &(cells.join(",") + "\n");
     }
