@@ -234,7 +234,7 @@ fn output_flags() -> Vec<Arg> {
 }
 
 fn merge_coplanar_flag() -> Arg {
-    let Coplanar { angle_deg, distance_m } = Coplanar::default();
+    let Coplanar { angle_deg, distance_m, .. } = Coplanar::default();
     let both = format!("{angle_deg},{distance_m}");
     let help = format!(
         "Join separate pieces of one plane whose normals differ by at most ANGLE_DEG degrees and whose middles lie \

@@ -41,7 +41,7 @@ impl Recipe {
             let at = method.params.iter().position(|param| param.name == name);
             values[at.ok_or_else(|| lacks(method, name))?] = value;
         }
-        method.with(given)?;
+        drop(method.with(given)?); // they are checked
         Ok(Recipe { method, values, threads, coplanar: None, outlines: None, curved: false })
     }
 
@@ -112,8 +112,12 @@ impl Recipe {
 
     /// A detector of it for a sensor.
     pub(crate) fn detector(&self, sensor: Sensor) -> Detector {
-        let method = (self.method.build)(&self.values).expect("the parameters were checked");
-        let detector = Detector::from_method(method).threads(self.threads).curved(self.curved).sensor(sensor);
+        let method = self.method.of_values(&self.values).expect("the parameters were checked");
+        let detector = Detector::new(method)
+            .expect("the parameters were checked")
+            .threads(self.threads)
+            .curved(self.curved)
+            .sensor(sensor);
         match self.coplanar {
             Some(within) => detector.merge_coplanar(within).expect("the limits were checked"),
             None => detector,

@@ -3,7 +3,7 @@
 
 mod support;
 
-use depthplanes::enhance::Enhancer;
+use depthplanes::internals::Enhancer;
 use depthplanes::methods::{self, MethodInfo};
 use depthplanes::scene::{ScenePixels, Spec};
 use depthplanes::{DepthView, Detection, Detector};
@@ -66,7 +66,7 @@ fn the_stages_of_ngaf_look_as_the_page_shows_them() {
     let (enhanced, _) = enhancer.enhance(&view, WINDOW, 1).unwrap();
     let filled: Vec<u16> = enhanced.rows().flatten().copied().collect();
     let ngaf = methods::find("ngaf").unwrap();
-    let mut detector = Detector::from_method(ngaf.with(&PARAMETERS).unwrap());
+    let mut detector = Detector::new(ngaf.with(&PARAMETERS).unwrap()).unwrap();
     let found = detector.detect(view).unwrap();
     let frame = |pixels| Frame {
         width: scene.width,
@@ -79,7 +79,9 @@ fn the_stages_of_ngaf_look_as_the_page_shows_them() {
         encoding: "scene",
         warnings: Vec::new(),
     };
-    let nothing = Detection { labels: vec![0; found.labels.len()], planes: Vec::new(), ..found.clone() };
+    let mut nothing = found.clone();
+    nothing.labels.fill(0);
+    nothing.planes.clear();
     check("ngaf-1-map.png", &overlay(ngaf, &frame(pixels.clone()), &nothing));
     check("ngaf-2-enhanced.png", &overlay(ngaf, &frame(filled.clone()), &nothing));
     check("ngaf-3-planes.png", &overlay(ngaf, &frame(filled), found));

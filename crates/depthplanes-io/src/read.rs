@@ -111,12 +111,11 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
         missing: missing.filter(|value| storable(&image.pixels, *value)),
         pixels: image.pixels,
         valid_range: options.valid_range.or(meaning.valid_range),
-        sensor: Sensor {
-            measure: meaning.measure,
-            intrinsics,
-            noise: noise(options.noise, of_preset(|preset| preset.noise), &meaning)?,
-            smooth_noise: noise(options.smooth_noise, of_preset(|preset| preset.smooth_noise), &meaning)?,
-        },
+        sensor: Sensor::default()
+            .measure(meaning.measure)
+            .intrinsics(intrinsics)
+            .noise(noise(options.noise, of_preset(|preset| preset.noise), &meaning)?)
+            .smooth_noise(noise(options.smooth_noise, of_preset(|preset| preset.smooth_noise), &meaning)?),
         format: format.name,
         encoding: encoding.name,
         warnings: image.warnings,

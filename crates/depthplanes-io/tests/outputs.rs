@@ -81,7 +81,9 @@ fn overlay_without_legend_has_the_size_of_the_map() {
 #[test]
 fn near_is_brighter_than_far_and_missing_is_darkest() {
     let frame = frame();
-    let none = depthplanes::Detection { planes: vec![], labels: vec![0; WIDTH * HEIGHT], ..detection() };
+    let mut none = detection();
+    none.planes.clear();
+    none.labels.fill(0);
     let (_, samples) = png_samples(&encode("overlay", "a.png", &report(&frame, &none)));
     let grey = |u: usize, v: usize| u32::from(samples[3 * (v * WIDTH + u)]);
     let (near, far, missing) = (grey(2, 20), grey(20, 2), grey(45, 1));
@@ -92,7 +94,7 @@ fn near_is_brighter_than_far_and_missing_is_darkest() {
 fn overlays_of_disparity_and_of_empty_and_of_flat_maps_are_drawn() {
     let mut frame = frame();
     let detection = detection();
-    frame.sensor = Sensor { measure: Measure::Disparity, ..Sensor::default() };
+    frame.sensor = Sensor::default().measure(Measure::Disparity);
     encode("overlay", "a.png", &Report { legend: true, ..report(&frame, &detection) });
     for value in [0, 700] {
         frame.pixels = depthplanes_io::Pixels::U16(vec![value; WIDTH * HEIGHT]);
@@ -176,7 +178,7 @@ fn room() -> (Frame, Detection) {
     let scene =
         "room:seed=2,sensor=tof_white,size=160x120".parse::<depthplanes::scene::Spec>().unwrap().frame().unwrap();
     let depthplanes::scene::ScenePixels::U16(pixels) = &scene.pixels else { panic!("millimetres") };
-    let mut detector = Detector::new(Ngaf { theta: 40.0, min: 8, ..Ngaf::default() }).unwrap().sensor(scene.sensor);
+    let mut detector = Detector::new(Ngaf::default().theta(40.0).min(8)).unwrap().sensor(scene.sensor);
     let found = detector.detect(scene.view()).unwrap().clone();
     let (width, height) = (scene.width, scene.height);
     (Frame { width, height, pixels: Pixels::U16(pixels.clone()), sensor: scene.sensor, ..frame() }, found)
@@ -221,7 +223,7 @@ fn a_mesh_of_exact_outlines_covers_the_area_of_each_plane_and_faces_the_camera()
             camera.fy = -camera.fy;
             frame.sensor.intrinsics = Some(camera);
             let Pixels::U16(pixels) = &frame.pixels else { unreachable!() };
-            let ngaf = Ngaf { theta: 40.0, min: 8, ..Ngaf::default() };
+            let ngaf = Ngaf::default().theta(40.0).min(8);
             let mut detector = Detector::new(ngaf).unwrap().sensor(frame.sensor);
             let view = depthplanes::DepthView::new(pixels, frame.width, frame.height).unwrap();
             detection = detector.detect(view).unwrap().clone();
@@ -295,7 +297,9 @@ fn an_unknown_extension_names_the_known_ones() {
 fn all_outputs_are_written_and_nothing_else() {
     let folder = folder("all_outputs");
     let (frame, mut detection) = (frame(), detection());
-    detection.curved = Some(Curved { labels: vec![0; detection.labels.len()], regions: Vec::new() });
+    let mut curved = Curved::default();
+    curved.labels.resize(detection.labels.len(), 0);
+    detection.curved = Some(curved);
     let wanted: Vec<(&Output, PathBuf)> = OUTPUTS.iter().map(|output| (output, folder.join(output.file))).collect();
     outputs::write_all(&report(&frame, &detection), &wanted).unwrap();
     assert_eq!(names_in(&folder), ["cloud.ply", "curved.png", "labels.png", "mesh.ply", "overlay.png", "planes.json"]);

@@ -7,9 +7,8 @@
 //! a warm-up), `copy N` (the same of a copy of the frame), `stages` (the three times of `detect`), `runs` (how many
 //! runs the frame has), `labels FILE` (writes the label image, raw u16).
 
-use depthplanes::group::{Grouper, Kernel, LinkRule, kernels};
-use depthplanes::select::Selection;
-use depthplanes::{DepthView, Pixel};
+use depthplanes::DepthView;
+use depthplanes::internals::{Compiles, Grouper, Kernel, LinkRule, Selection, kernels};
 use std::hint::black_box;
 use std::io::BufRead;
 use std::time::{Duration, Instant};
@@ -35,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         min: min.parse()?,
         threads: threads.parse()?,
         kernel: match kernel.as_str() {
-            "best" => Kernel::best(),
+            "best" => depthplanes::internals::best(),
             name => kernels().find(|kernel| kernel.name() == name).ok_or("no such kernel on this processor")?,
         },
     };
@@ -48,7 +47,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
 }
 
-fn serve<T: Pixel>(job: &Job, pixels: Vec<T>) -> Result<(), Box<dyn std::error::Error>> {
+fn serve<T: Compiles>(job: &Job, pixels: Vec<T>) -> Result<(), Box<dyn std::error::Error>> {
     let view = DepthView::new(&pixels, job.width, job.height)?;
     let rule = LinkRule::new(view.validity(), job.theta)?;
     let mut grouper = Grouper::with_kernel(job.kernel);

@@ -24,10 +24,9 @@
 //! and the next one is read. After a header that does not tell how many bytes follow (unknown pixel
 //! type, impossible size or thread count) or a request that breaks off, the worker ends with code 1.
 
-use depthplanes::group::{Grouper, Kernel, LinkRule, kernels};
-use depthplanes::map::{MAX_PIXELS, MAX_SIDE};
-use depthplanes::select::Selection;
-use depthplanes::{DepthView, Pixel};
+use depthplanes::DepthView;
+use depthplanes::internals::{Compiles, Grouper, Kernel, LinkRule, Selection, kernels};
+use depthplanes::limits::{MAX_PIXELS, MAX_SIDE};
 use std::error::Error;
 use std::io::{self, BufReader, BufWriter, Read, Write};
 
@@ -115,7 +114,7 @@ fn numbers<T, const N: usize>(bytes: &[u8], read: fn([u8; N]) -> T) -> Vec<T> {
 }
 
 /// The label image of every kernel and number of threads.
-fn label<T: Pixel>(lanes: &mut [Lane], request: &Request, pixels: &[T]) -> depthplanes::Result<Vec<Vec<u16>>> {
+fn label<T: Compiles>(lanes: &mut [Lane], request: &Request, pixels: &[T]) -> depthplanes::Result<Vec<Vec<u16>>> {
     let map = DepthView::new(pixels, request.width, request.height)?;
     let rule = LinkRule::new(map.validity(), request.theta)?;
     let mut images = Vec::new();

@@ -14,11 +14,8 @@ pub(crate) fn main() -> depthplanes::Result<()> {
         }
     }
     let map = DepthView::with_stride(&buffer, width, height, stride)?;
-    let sensor = Sensor {
-        measure: Measure::depth(1.0)?,
-        intrinsics: Some(Intrinsics::new(145.0, 145.0, 79.5, 59.5)?),
-        ..Sensor::default()
-    };
+    let sensor =
+        Sensor::default().measure(Measure::depth(1.0)?).intrinsics(Some(Intrinsics::new(145.0, 145.0, 79.5, 59.5)?));
     let mut detector = Detector::default().sensor(sensor);
     let found = detector.detect(map)?;
     for plane in &found.planes {

@@ -4,6 +4,7 @@ use crate::camera::Hessian;
 
 /// What a method found in one map. A [`crate::Detector`] owns one and reuses its memory.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Detection {
     /// Columns of the map and of `labels`.
     pub width: usize,
@@ -26,6 +27,7 @@ pub struct Detection {
 
 /// Surfaces that bend, which are no planes.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Curved {
     /// Row by row, `width * height`: 0 = none, 1.. = `regions[label - 1]`. No pixel has a plane as well.
     pub labels: Vec<u16>,
@@ -35,6 +37,7 @@ pub struct Curved {
 
 /// A connected surface that bends.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CurvedRegion {
     /// Its value in the label image of curved regions, 1..=65535.
     pub label: u16,
@@ -96,6 +99,7 @@ pub(crate) fn share(part: usize, whole: usize) -> f64 {
 
 /// One plane.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Plane {
     /// Its value in the label image, 1..=65535.
     pub label: u16,
@@ -116,6 +120,13 @@ pub struct Plane {
 }
 
 impl Plane {
+    /// A plane of which only its pixels are known, for detections that were made elsewhere.
+    pub fn new(label: u16, pixel_count: usize, bounding_box: PixelBox) -> Self {
+        let PixelBox { u_min, v_min, u_max, v_max } = bounding_box;
+        let centroid = [[u_min, u_max], [v_min, v_max]].map(|[low, high]| (f64::from(low) + f64::from(high)) / 2.0);
+        Plane { label, pixel_count, share_of_valid: 0.0, bounding_box, centroid, fit: None, metric: None }
+    }
+
     /// Unit normal towards the camera, camera coordinates (x right, y down, z forward); `None` unless unit and camera are
     /// known.
     pub fn normal(&self) -> Option<[f64; 3]> {
@@ -173,6 +184,7 @@ pub struct MapFit {
 /// Fitted by least squares where the sensor's error is near constant: in inverse depth for depth
 /// maps, in disparity for disparity maps.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MetricPlane {
     /// `normal . P + distance = 0`, the normal towards the camera.
     pub plane: Hessian,
@@ -190,8 +202,17 @@ pub struct MetricPlane {
     pub covariance_from: CovarianceSource,
 }
 
+impl MetricPlane {
+    /// A plane of which only its equation and the mean of its points are known, for detections that were made elsewhere.
+    pub fn new(plane: Hessian, centroid_m: [f64; 3]) -> Self {
+        let covariance_from = CovarianceSource::Residuals;
+        MetricPlane { plane, rms_m: 0.0, centroid_m, area_m2: None, covariance: [[0.0; 4]; 4], covariance_from }
+    }
+}
+
 /// What a covariance was propagated from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum CovarianceSource {
     /// The noise of the sensor, stated or estimated, its white part and its smooth one, and the rounding of its values. If
     /// the residuals have a significantly larger variance than that (three standard deviations of a chi-squared), the
@@ -199,4 +220,14 @@ pub enum CovarianceSource {
     Noise,
     /// The residuals of the fit, as independent errors: the noise of the sensor is not known.
     Residuals,
+}
+
+impl CovarianceSource {
+    /// `noise` or `residuals`, as in records.
+    pub fn name(self) -> &'static str {
+        match self {
+            CovarianceSource::Noise => "noise",
+            CovarianceSource::Residuals => "residuals",
+        }
+    }
 }

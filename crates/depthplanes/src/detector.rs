@@ -35,7 +35,7 @@ use crate::util::parallel::on_threads;
 ///     1001, 1001,    0, 2001, 2002,
 ///     1001, 1002, 1002, 2002, 2002,
 /// ];
-/// let mut detector = Detector::new(Ngaf { theta: 1.0, min: 7, ..Ngaf::default() })?;
+/// let mut detector = Detector::new(Ngaf::default().theta(1.0).min(7))?;
 /// let found = detector.detect(DepthView::new(&depth_mm, 5, 4)?)?;
 /// assert_eq!(found.planes.len(), 2);
 /// assert_eq!(found.planes[0].pixel_count, 11);

@@ -7,6 +7,7 @@ use std::fmt;
 
 /// What each stage of a method saw at one pixel, and what it came to.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Explanation {
     /// The pixel: column u, row v.
     pub at: [usize; 2],
@@ -22,6 +23,7 @@ pub struct Explanation {
 
 /// What one stage saw of one thing.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Finding {
     /// Name of the stage, or what comes before the first.
     pub stage: &'static str,
@@ -62,6 +64,7 @@ impl Finding {
 
 /// A number of a [`Finding`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Quantity {
     /// What it is.
     pub name: &'static str,
@@ -75,6 +78,7 @@ pub struct Quantity {
 
 /// What a number was held against, in its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Limit {
     /// It has to be this or less.
     AtMost(f64),
@@ -85,6 +89,15 @@ pub enum Limit {
 }
 
 impl Limit {
+    /// In words, `at most`, and the bound.
+    pub fn words(self) -> (&'static str, f64) {
+        match self {
+            Limit::AtMost(most) => ("at most", most),
+            Limit::AtLeast(least) => ("at least", least),
+            Limit::MoreThan(bound) => ("more than", bound),
+        }
+    }
+
     /// Whether a value keeps to it.
     pub fn holds(self, value: f64) -> bool {
         match self {
@@ -241,6 +254,7 @@ fn counted(pixels: usize) -> String {
 
 /// A change of parameters after which the pixel belongs to a plane.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Suggestion {
     /// The parameters to give, with their values; the others stay.
     pub parameters: Vec<(&'static str, f64)>,

@@ -46,6 +46,7 @@ pub mod detection;
 mod detector;
 pub mod error;
 pub mod explanation;
+mod labelled;
 pub mod limits;
 pub mod map;
 pub mod methods;
@@ -65,6 +66,7 @@ pub use detection::{CovarianceSource, Detection, Part, Plane};
 pub use detector::Detector;
 pub use error::{Error, Result};
 pub use explanation::Explanation;
+pub use labelled::describe_labels;
 pub use map::{AnyView, DepthView, Pixel};
 pub use methods::{Ngaf, Planar};
 pub use sensor::Sensor;
@@ -75,7 +77,7 @@ pub use sensor::Sensor;
 pub mod internals {
     pub use crate::components::selection::{LabelledRun, Selection};
     pub use crate::components::{Compiles, Grouper, Groups, Kernel, LinkRule, Run, best, kernels};
-    pub use crate::methods::Enhancer;
+    pub use crate::methods::{Enhancer, Fillable};
     pub use crate::statistics::least_squares::{AffineFit, Moments, ValueSums, hessian, metric_covariance};
     pub use crate::statistics::{Describer, Seen, Tally};
 }

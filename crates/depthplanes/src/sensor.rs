@@ -6,7 +6,15 @@ use crate::noise::sensor_noise::SensorNoise;
 
 /// Everything known about how a map came about. Detection needs none of it; metric planes need
 /// measure and camera.
+///
+/// ```
+/// use depthplanes::{Intrinsics, Measure, Sensor};
+/// let sensor = Sensor::default().measure(Measure::depth(0.001)?).intrinsics(Intrinsics::new(525.0, 525.0, 319.5, 239.5)?);
+/// assert!(sensor.noise.is_none()); // it is estimated from each map
+/// # Ok::<(), depthplanes::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Sensor {
     /// What the numbers mean.
     pub measure: Measure,
@@ -20,6 +28,30 @@ pub struct Sensor {
 }
 
 impl Sensor {
+    /// The same with numbers that mean something else.
+    #[must_use]
+    pub fn measure(self, measure: Measure) -> Self {
+        Sensor { measure, ..self }
+    }
+
+    /// The same with that camera, or with none.
+    #[must_use]
+    pub fn intrinsics(self, intrinsics: impl Into<Option<Intrinsics>>) -> Self {
+        Sensor { intrinsics: intrinsics.into(), ..self }
+    }
+
+    /// The same with that noise of single pixels, or with one to be estimated.
+    #[must_use]
+    pub fn noise(self, noise: impl Into<Option<SensorNoise>>) -> Self {
+        Sensor { noise: noise.into(), ..self }
+    }
+
+    /// The same with that smooth part of the noise, or with one to be estimated.
+    #[must_use]
+    pub fn smooth_noise(self, smooth_noise: impl Into<Option<SensorNoise>>) -> Self {
+        Sensor { smooth_noise: smooth_noise.into(), ..self }
+    }
+
     /// Whether planes can be given in metres.
     ///
     /// # Errors

@@ -4,11 +4,11 @@
 
 mod naive;
 
-use depthplanes::methods::Method;
+use depthplanes::methods::Parameters;
 use depthplanes::noise::{EnlargementFinder, RoundingFinder, Space};
 use depthplanes::outline::Outliner;
 use depthplanes::scene::{ScenePixels, Spec};
-use depthplanes::{Coplanar, DepthView, Detector, Error, Intrinsics, Measure, Ngaf, Pixel, Planar, Sensor};
+use depthplanes::{Coplanar, DepthView, Detector, Intrinsics, Measure, Ngaf, Pixel, Planar, Sensor};
 use naive::Random;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -78,22 +78,24 @@ fn frame<T: Pixel>(random: &mut Random, number: u64, width: usize, height: usize
     (0..width * height).map(|at| pixel(at, random)).collect()
 }
 
-const EVERYTHING: Ngaf = Ngaf { theta: 3.0, min: 2, window: 5, passes: 2, max_rms: 50.0, min_fill: 0.1, margin: 1 };
+fn everything() -> Ngaf {
+    Ngaf::default().theta(3.0).min(2).window(5).passes(2).max_rms(50.0).min_fill(0.1).margin(1)
+}
 
 fn sensors() -> [Sensor; 3] {
     let intrinsics = Intrinsics::new(300.0, 300.0, 80.0, 60.0).ok();
     let stereo = Measure::stereo(1.0, 300.0, 0.1, 0.0).unwrap();
     [
         Sensor::default(),
-        Sensor { intrinsics, ..Sensor::default() },
-        Sensor { measure: stereo, intrinsics, ..Sensor::default() },
+        Sensor::default().intrinsics(intrinsics),
+        Sensor::default().measure(stereo).intrinsics(intrinsics),
     ]
 }
 
 /// `first` is the number of the first frame, so that it is in turn an empty, a simple and a noisy one.
 fn check<T: Pixel, M>(params: M, sensor: Sensor, (width, height): (usize, usize), first: u64)
 where
-    M: TryInto<Box<dyn Method>, Error = Error> + Copy + std::fmt::Debug,
+    M: Parameters + Copy + std::fmt::Debug,
 {
     let mut random = Random(first);
     let mut detector = Detector::new(params).unwrap().sensor(sensor);
@@ -121,12 +123,12 @@ fn the_counter_counts() {
 
 #[test]
 fn later_frames_allocate_nothing() {
-    let plain = Ngaf { theta: 3.0, ..Ngaf::default() };
+    let plain = Ngaf::default().theta(3.0);
     for sensor in sensors() {
-        for params in [plain, EVERYTHING] {
+        for params in [plain, everything()] {
             // The last is cut into several strips; more than 32 pixels keep its noise within 65535 planes.
             for (size, firsts, min) in [((120, 90), 6, 2), ((97, 33), 6, 2), ((900, 600), 1, 32)] {
-                let params = Ngaf { min, ..params };
+                let params = params.min(min);
                 for first in 0..firsts {
                     check::<u8, _>(params, sensor, size, first);
                     check::<u16, _>(params, sensor, size, first);
@@ -140,7 +142,7 @@ fn later_frames_allocate_nothing() {
 #[test]
 fn later_frames_of_planar_allocate_nothing() {
     for sensor in sensors() {
-        for params in [Planar::default(), Planar { min: 0, noise: 2.0, inlier_threshold: 1.0, ..Planar::default() }] {
+        for params in [Planar::default(), Planar::default().min(0).noise(2.0).inlier_threshold(1.0)] {
             for (size, first) in [((120, 90), 0), ((97, 33), 1), ((400, 300), 2)] {
                 check::<u8, _>(params, sensor, size, first);
                 check::<u16, _>(params, sensor, size, first);
@@ -164,8 +166,8 @@ fn later_frames_with_coplanar_planes_joined_allocate_nothing() {
     let rooms: Vec<Vec<u16>> = rooms.collect();
     let mut parts = [0; 2];
     for sensor in &sensors()[1..] {
-        let ngaf = Detector::new(Ngaf { theta: 3.0, min: 2, ..Ngaf::default() }).unwrap();
-        let planar = Detector::new(Planar { min: 0, min_area: 1e-4, ..Planar::default() }).unwrap();
+        let ngaf = Detector::new(Ngaf::default().theta(3.0).min(2)).unwrap();
+        let planar = Detector::new(Planar::default().min(0).min_area(1e-4)).unwrap();
         for ((detector, frames), parts) in [(ngaf, &clutter), (planar, &rooms)].into_iter().zip(&mut parts) {
             let within = Coplanar::new(10.0, 0.1).unwrap();
             let mut detector = detector.sensor(*sensor).merge_coplanar(within).unwrap();
@@ -187,7 +189,7 @@ fn outlines_of_frames_no_more_intricate_than_before_allocate_nothing() {
     for sensor in sensors() {
         for tolerance in [0.0, 1.0, 3.0] {
             let mut random = Random(4);
-            let mut detector = Detector::new(Ngaf { theta: 3.0, min: 2, ..Ngaf::default() }).unwrap().sensor(sensor);
+            let mut detector = Detector::new(Ngaf::default().theta(3.0).min(2)).unwrap().sensor(sensor);
             let mut outliner = Outliner::new(tolerance).unwrap();
             let frames: Vec<Vec<u16>> = (0..12).map(|k| frame(&mut random, k, width, height)).collect();
             for (number, frame) in frames.iter().chain(&frames).enumerate() {
@@ -206,7 +208,7 @@ fn outlines_of_frames_no_more_intricate_than_before_allocate_nothing() {
 #[test]
 fn smaller_frames_allocate_nothing_either() {
     let mut random = Random(9);
-    let mut detector = Detector::new(EVERYTHING).unwrap().sensor(sensors()[1]);
+    let mut detector = Detector::new(everything()).unwrap().sensor(sensors()[1]);
     for (number, (width, height)) in [(160, 120), (100, 120), (1, 1), (160, 119), (160, 120)].into_iter().enumerate() {
         let frame: Vec<u16> = frame(&mut random, 1, width, height);
         let view = DepthView::new(&frame, width, height).unwrap();

@@ -14,12 +14,12 @@ fn scene(spec: &str) -> SceneFrame {
 
 fn run<'m>(method: &str, given: &[(&str, f64)], sensor: Sensor, view: impl Into<AnyView<'m>>) -> Detection {
     let method = find(method).unwrap().with(given).unwrap();
-    Detector::from_method(method).sensor(sensor).detect(view).unwrap().clone()
+    Detector::new(method).unwrap().sensor(sensor).detect(view).unwrap().clone()
 }
 
 fn disparity(sigma: Option<f64>) -> Sensor {
     let noise = sigma.map(|sigma| SensorNoise::Value { sigma });
-    Sensor { measure: Measure::Disparity, noise, ..Sensor::default() }
+    Sensor::default().measure(Measure::Disparity).noise(noise)
 }
 
 /// A map of that size, given by column and row.
@@ -58,7 +58,7 @@ fn the_three_planes_of_a_corner_are_found_in_depth_and_in_disparity() {
             assert_eq!(overlaps.len(), 3);
             assert!(overlaps.iter().all(|&share| share >= 0.75), "{method} {sensor}: {overlaps:?}");
             // No camera is needed.
-            let sensor = Sensor { intrinsics: None, ..frame.sensor };
+            let sensor = frame.sensor.intrinsics(None);
             assert_eq!(run(method, &[], sensor, frame.view()).labels, found.labels, "{method}");
         }
     }
@@ -70,7 +70,7 @@ fn the_same_seed_gives_the_same_labels_on_any_number_of_threads() {
     for method in METHODS {
         let one = run(method, &[], frame.sensor, frame.view());
         let again = find(method).unwrap().with(&[]).unwrap();
-        let mut detector = Detector::from_method(again).sensor(frame.sensor).threads(2);
+        let mut detector = Detector::new(again).unwrap().sensor(frame.sensor).threads(2);
         for _ in 0..2 {
             let two = detector.detect(frame.view()).unwrap();
             assert_eq!((&one.labels, one.planes.len()), (&two.labels, two.planes.len()), "{method}");

@@ -1,7 +1,7 @@
 //! Covariances of planes against the truth: the normalised error squared of (normal, distance) has 3 degrees of
 //! freedom, since the normal has two, and so the mean 3.
 
-use depthplanes::fit::{Moments, hessian, metric_covariance};
+use depthplanes::internals::{Moments, hessian, metric_covariance};
 use depthplanes::noise::{NoiseTable, SensorNoise};
 use depthplanes::scene::{Random, SceneFrame, SensorModel, Spec};
 use depthplanes::{
@@ -69,12 +69,7 @@ impl Case {
 
     /// What is found in a map of noisy values.
     fn detect(&self, values: &[f64], width: usize, height: usize, intrinsics: Intrinsics) -> Detection {
-        let sensor = Sensor {
-            measure: self.measure,
-            intrinsics: Some(intrinsics),
-            noise: Some(self.noise),
-            ..Sensor::default()
-        };
+        let sensor = Sensor::default().measure(self.measure).intrinsics(Some(intrinsics)).noise(Some(self.noise));
         let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
         if self.is_whole {
             let whole: Vec<u16> = values.iter().map(|value| value.round() as u16).collect();
@@ -210,8 +205,8 @@ fn residuals_speak_where_the_noise_is_not_known_or_too_small() {
         // A seventh of the truth.
         let little = SensorNoise::Depth { base: 0.00015, growth: 0.00019 };
         for (noise, errors) in [None, Some(little)].into_iter().zip(&mut errors) {
-            let sensor = Sensor { measure: case.measure, intrinsics: Some(camera()), noise, ..Sensor::default() };
-            let mut detector = Detector::new(Ngaf { theta: 1e6, ..Ngaf::default() }).unwrap().sensor(sensor);
+            let sensor = Sensor::default().measure(case.measure).intrinsics(Some(camera())).noise(noise);
+            let mut detector = Detector::new(Ngaf::default().theta(1e6)).unwrap().sensor(sensor);
             let found = detector.detect(DepthView::new(&values, WIDTH, HEIGHT).unwrap()).unwrap();
             let from = if noise.is_some() { CovarianceSource::Noise } else { CovarianceSource::Residuals };
             assert_eq!(found.planes[0].metric.unwrap().covariance_from, from);

@@ -39,7 +39,7 @@ impl Alarms {
     fn add(&mut self, map: &[f32], middles: &[[usize; 2]]) {
         let view = DepthView::new(map, WIDTH, HEIGHT).unwrap();
         let noise = Some(SensorNoise::Value { sigma: SIGMA });
-        let sensor = Sensor { measure: Measure::Disparity, noise, ..Sensor::default() };
+        let sensor = Sensor::default().measure(Measure::Disparity).noise(noise);
         let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor).curved(true);
         let found = detector.detect(view).unwrap().clone();
         let labels = found.curved.as_ref().unwrap();

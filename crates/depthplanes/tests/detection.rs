@@ -124,16 +124,16 @@ fn sensors() -> [Sensor; 4] {
     let stereo = Measure::stereo(0.5, 90.0, 0.2, 3.0).unwrap();
     [
         Sensor::default(),
-        Sensor { measure: Measure::Depth { metres: 0.02 }, intrinsics, ..Sensor::default() },
-        Sensor { measure: stereo, intrinsics, ..Sensor::default() },
-        Sensor { measure: Measure::Disparity, intrinsics, ..Sensor::default() },
+        Sensor::default().measure(Measure::Depth { metres: 0.02 }).intrinsics(intrinsics),
+        Sensor::default().measure(stereo).intrinsics(intrinsics),
+        Sensor::default().measure(Measure::Disparity).intrinsics(intrinsics),
     ]
 }
 
 fn random_params(random: &mut Random) -> Ngaf {
     let window = [0, 0, 3, 5, 9][random.below(5) as usize];
     let passes = 1 + random.below(3) as u32;
-    Ngaf { theta: random.below(5) as f64, min: random.below(12) as u32, window, passes, ..Ngaf::default() }
+    Ngaf::default().theta(random.below(5) as f64).min(random.below(12) as u32).window(window).passes(passes)
 }
 
 /// Runs `test` on the same map as `u8`, `u16` times 50 and `f32` divided by 8.
@@ -156,7 +156,7 @@ fn detections_on_random_maps_are_what_they_say() {
         let params = random_params(&mut random);
         let sensor = sensors()[case % 4];
         as_each_type(&bytes, width, height, |view, unit| {
-            let params = Ngaf { theta: params.theta * unit, ..params };
+            let params = params.theta(params.theta * unit);
             let found = detect(params, sensor, view);
             check(&found, view, &params, sensor, &format!("case {case}, {width}x{height}, {params:?}"));
             let (map, _) = enhanced(&view, &params);
@@ -174,7 +174,7 @@ fn detections_on_scenes_are_what_they_say() {
             let frame = name.parse::<Spec>().unwrap().frame().unwrap();
             let metres = if sensor == "clean" { 0.001 } else { 1.0 };
             for (theta, window) in [(2.0, 0), (30.0, 5)] {
-                let params = Ngaf { theta: theta * metres, window, passes: 2, ..Ngaf::default() };
+                let params = Ngaf::default().theta(theta * metres).window(window).passes(2);
                 let found = detect(params, frame.sensor, frame.view());
                 check(&found, frame.view(), &params, frame.sensor, &name);
             }
@@ -206,7 +206,7 @@ fn any_number_of_threads_gives_the_same_detection() {
     }
     for (width, height, map) in &maps {
         as_each_type(map, *width, *height, |view, unit| {
-            let params = Ngaf { theta: unit, min: 200, window: 3, max_rms: 90.0 * unit, ..Ngaf::default() };
+            let params = Ngaf::default().theta(unit).min(200).window(3).max_rms(90.0 * unit);
             let on = |threads: usize| {
                 let mut detector = Detector::new(params).unwrap().sensor(sensors()[1]).threads(threads);
                 detector.detect(view).unwrap().clone()
@@ -223,7 +223,7 @@ fn any_number_of_threads_gives_the_same_detection() {
 fn a_used_detector_answers_like_a_fresh_one() {
     let mut random = Random(73);
     for sensor in sensors() {
-        let params = Ngaf { theta: 2.0, min: 3, window: 5, passes: 2, min_fill: 0.3, ..Ngaf::default() };
+        let params = Ngaf::default().theta(2.0).min(3).window(5).passes(2).min_fill(0.3);
         let mut used = Detector::new(params).unwrap().sensor(sensor).threads(2);
         for case in 0..300 {
             let (width, height) = match case % 60 {
@@ -245,7 +245,7 @@ fn a_used_detector_answers_like_a_fresh_one() {
 
 #[test]
 fn a_detector_recovers_from_a_map_with_too_many_planes() {
-    let params = Ngaf { min: 0, ..Ngaf::default() };
+    let params = Ngaf::default().min(0);
     let board: Vec<u8> = (0..400 * 400).map(|at| 1 + ((at % 400 + at / 400) % 2 * 100) as u8).collect();
     let mut detector = Detector::new(params).unwrap();
     let flat = [7u8; 30];
@@ -277,14 +277,12 @@ fn own_conditions_drop_the_planes_that_the_table_says() {
         let (width, height) = (1 + random.below(60) as usize, 1 + random.below(40) as usize);
         let map = naive::awkward_map(&mut random, width, height);
         let view = DepthView::new(&map, width, height).unwrap();
-        let plain = Ngaf { theta: random.below(6) as f64, min: random.below(9) as u32, ..Ngaf::default() };
+        let plain = Ngaf::default().theta(random.below(6) as f64).min(random.below(9) as u32);
         let pick = |random: &mut Random, choices: [f64; 4]| choices[random.below(4) as usize];
-        let params = Ngaf {
-            max_rms: pick(&mut random, [0.0, 0.05, 0.7, 2.0]) * (1.0 + 1e-6),
-            min_fill: pick(&mut random, [0.0, 0.25, 0.5, 1.0]),
-            margin: pick(&mut random, [0.0, 1.0, 3.0, 65_535.0]) as u32,
-            ..plain
-        };
+        let params = plain
+            .max_rms(pick(&mut random, [0.0, 0.05, 0.7, 2.0]) * (1.0 + 1e-6))
+            .min_fill(pick(&mut random, [0.0, 0.25, 0.5, 1.0]))
+            .margin(pick(&mut random, [0.0, 1.0, 3.0, 65_535.0]) as u32);
         let all = detect(plain, Sensor::default(), view.into());
         let values: Vec<f64> = map.iter().map(|&value| value.into()).collect();
         let margin = params.margin as usize;
@@ -317,15 +315,15 @@ fn conditions_off_are_no_conditions() {
     let line = DepthView::new(&line, 40, 1).unwrap();
     let planes = |params: Ngaf, view: DepthView<'_, u8>| detect(params, Sensor::default(), view.into()).planes.len();
     assert_eq!(planes(Ngaf::default(), line), 1);
-    assert_eq!(planes(Ngaf { max_rms: 1e9, ..Ngaf::default() }, line), 0);
-    assert_eq!(planes(Ngaf { min_fill: 1.0, ..Ngaf::default() }, line), 1);
+    assert_eq!(planes(Ngaf::default().max_rms(1e9), line), 0);
+    assert_eq!(planes(Ngaf::default().min_fill(1.0), line), 1);
     let ring: Vec<u8> =
         (0..400).map(|at| u8::from([0, 19].contains(&(at % 20)) || [0, 19].contains(&(at / 20)))).collect();
     let ring = DepthView::new(&ring, 20, 20).unwrap();
-    assert_eq!(planes(Ngaf { min_fill: 76.0 / 400.0, ..Ngaf::default() }, ring), 1);
-    assert_eq!(planes(Ngaf { min_fill: 0.2, ..Ngaf::default() }, ring), 0);
+    assert_eq!(planes(Ngaf::default().min_fill(76.0 / 400.0), ring), 1);
+    assert_eq!(planes(Ngaf::default().min_fill(0.2), ring), 0);
     // All of the ring lies at the edge.
-    assert_eq!(planes(Ngaf { margin: 1, min: 0, ..Ngaf::default() }, ring), 0);
+    assert_eq!(planes(Ngaf::default().margin(1).min(0), ring), 0);
 }
 
 /// Compares planes whose pixels all show one true plane with it; returns how many there were.
@@ -361,7 +359,7 @@ fn isolated_planes_of_clean_scenes_are_where_the_truth_says() {
             let name = format!("{scene}:seed={seed},sensor=clean,size=320x240");
             let frame = name.parse::<Spec>().unwrap().frame().unwrap();
             for theta in [0.002, 0.004, 0.008, 0.015, 0.03] {
-                let found = detect(Ngaf { theta, ..Ngaf::default() }, frame.sensor, frame.view());
+                let found = detect(Ngaf::default().theta(theta), frame.sensor, frame.view());
                 compared += compare_with_truth(&frame, &found, 300, &format!("{name}, theta {theta}"));
             }
         }
@@ -378,7 +376,7 @@ fn walls_facing_the_camera_are_found_at_their_distance() {
     }
     let camera = Camera::kinect(320, 240, Pose::at_height(1.0, 0.0)).unwrap();
     let frame = render(&scene, &camera, SensorModel::Clean, 0).unwrap();
-    let found = detect(Ngaf { theta: 0.01, ..Ngaf::default() }, frame.sensor, frame.view());
+    let found = detect(Ngaf::default().theta(0.01), frame.sensor, frame.view());
     assert_eq!(found.planes.len(), 3);
     assert_eq!(compare_with_truth(&frame, &found, 1000, "walls"), 3);
     let mut distances: Vec<f64> = found.planes.iter().map(|plane| plane.metric.unwrap().plane.distance).collect();
@@ -402,9 +400,9 @@ fn slanted_planes_are_exact_in_disparity() {
             a * (u as f64 - 100.0) + b * (v as f64 - 75.0) + c
         };
         let map: Vec<f32> = (0..width * height).map(|at| disparity(at % width, at / width) as f32).collect();
-        let sensor = Sensor { measure, intrinsics: Some(camera), ..Sensor::default() };
+        let sensor = Sensor::default().measure(measure).intrinsics(Some(camera));
         let view = DepthView::new(&map, width, height).unwrap();
-        let found = detect(Ngaf { theta: 0.11, ..Ngaf::default() }, sensor, view.into());
+        let found = detect(Ngaf::default().theta(0.11), sensor, view.into());
         assert_eq!(found.planes.len(), 2, "case {case}");
         for (plane, [a, b, c]) in found.planes.iter().zip(planes) {
             let m = [slope * a * camera.fx, slope * b * camera.fy, slope * c + offset];
@@ -425,7 +423,7 @@ fn values_behind_infinity_leave_a_plane_without_metric_values() {
     let view = DepthView::new(&map, 30, 20).unwrap();
     let intrinsics = Intrinsics::new(100.0, 100.0, 15.0, 10.0).ok();
     let at = |offset: f64| {
-        let sensor = Sensor { measure: Measure::InverseDepth { slope: 0.1, offset }, intrinsics, ..Sensor::default() };
+        let sensor = Sensor::default().measure(Measure::InverseDepth { slope: 0.1, offset }).intrinsics(intrinsics);
         detect(Ngaf::default(), sensor, view.into()).planes[0].metric.is_some()
     };
     assert!(at(-0.09) && !at(-0.1) && !at(-5.0));

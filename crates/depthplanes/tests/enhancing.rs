@@ -3,7 +3,7 @@
 
 mod naive;
 
-use depthplanes::enhance::Enhancer;
+use depthplanes::internals::{Enhancer, Fillable};
 use depthplanes::{DepthView, Pixel};
 use naive::Random;
 
@@ -29,7 +29,7 @@ fn bits<T: Pixel>(values: impl Iterator<Item = T>) -> Vec<u64> {
 }
 
 /// Compares one map with the naive version; returns how many pixels were filled.
-fn check<T: Pixel>(view: &DepthView<'_, T>, window: u32, passes: u32, enhancer: &mut Enhancer) -> usize {
+fn check<T: Fillable>(view: &DepthView<'_, T>, window: u32, passes: u32, enhancer: &mut Enhancer) -> usize {
     let rule = view.validity();
     let ok = |value: f64| naive::valid(value, rule.sentinel.into(), rule.low.into(), rule.high.into());
     let mean = if T::IS_INTEGER { naive::whole_mean } else { naive::single_mean };

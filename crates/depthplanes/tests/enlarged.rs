@@ -30,7 +30,7 @@ fn enlarged(source: &[u16], factor: [f64; 2]) -> (Vec<u16>, [usize; 2]) {
 fn sensor([x, y]: [f64; 2]) -> Sensor {
     let centre = |centre: f64, factor: f64| (centre + 0.5) * factor - 0.5;
     let intrinsics = Intrinsics::new(144.0 * x, 144.0 * y, centre(79.5, x), centre(59.5, y)).ok();
-    Sensor { intrinsics, ..Sensor::default() }
+    Sensor::default().intrinsics(intrinsics)
 }
 
 fn detect(detector: &mut Detector, pixels: &[u16], [width, height]: [usize; 2]) -> Detection {
@@ -41,13 +41,13 @@ fn detect(detector: &mut Detector, pixels: &[u16], [width, height]: [usize; 2]) 
 fn an_enlarged_map_has_the_planes_of_its_source() {
     let source = room();
     for min in [100, 2000] {
-        let params = Planar { min, ..Planar::default() };
+        let params = Planar::default().min(min);
         let right = detect(&mut Detector::new(params).unwrap().sensor(sensor([1.0, 1.0])), &source, SIZE);
         assert_eq!(right.planes.len(), 3);
         for factor @ [x, y] in [[2.0, 2.0], [3.0, 3.0], [2.5, 4.0], [7.5, 7.5]] {
             let (pixels, size) = enlarged(&source, factor);
             for threads in [1, 3] {
-                let params = Planar { min: (f64::from(min) * x * y) as u32, ..params };
+                let params = params.min((f64::from(min) * x * y) as u32);
                 let detector = Detector::new(params).unwrap().threads(threads);
                 let found = detect(&mut detector.sensor(sensor(factor)), &pixels, size);
                 check(&found, &right, size[0], factor);
@@ -74,8 +74,7 @@ fn check(found: &Detection, right: &Detection, width: usize, factor: [f64; 2]) {
 #[test]
 fn min_counts_pixels_of_the_whole_map() {
     let (pixels, size) = enlarged(&room(), [2.0, 2.0]);
-    let with =
-        |min| detect(&mut Detector::new(Planar { min, ..Planar::default() }).unwrap(), &pixels, size).planes.len();
+    let with = |min| detect(&mut Detector::new(Planar::default().min(min)).unwrap(), &pixels, size).planes.len();
     let all = detect(&mut Detector::default(), &pixels, size);
     let smallest = all.planes.last().unwrap().pixel_count as u32;
     assert_eq!([with(smallest - 1), with(smallest)], [all.planes.len(), all.planes.len() - 1]);
@@ -106,7 +105,7 @@ fn bends_of_an_enlarged_map_are_reported_on_it() {
     let right = detect(&mut Detector::default().curved(true), &source, SIZE).curved.unwrap();
     assert!(!right.regions.is_empty());
     let (pixels, size) = enlarged(&source, [3.0, 3.0]);
-    let params = Planar { min: 900, ..Planar::default() };
+    let params = Planar::default().min(900);
     let found = detect(&mut Detector::new(params).unwrap().curved(true), &pixels, size).curved.unwrap();
     assert_eq!(found.regions.len(), right.regions.len());
     for (at, &label) in found.labels.iter().enumerate() {
@@ -131,11 +130,11 @@ fn a_pixel_of_an_enlarged_map_is_explained_by_that_of_its_source() {
         assert!(why.findings[0].subject.contains("column"), "{:?}", why.findings[0]);
     }
     // All planes are too small: a smaller `min` is suggested, in pixels of this map.
-    let mut detector = Detector::new(Planar { min: 200_000, ..Planar::default() }).unwrap();
+    let mut detector = Detector::new(Planar::default().min(200_000)).unwrap();
     let why = detector.explain(view, [3, 5]).unwrap();
     assert_eq!(why.verdict.kind(), "small");
     let (name, min) = why.suggestions[0].parameters[0];
-    let mut detector = Detector::new(Planar { min: min as u32, ..Planar::default() }).unwrap();
+    let mut detector = Detector::new(Planar::default().min(min as u32)).unwrap();
     assert_eq!(name, "min");
     assert!(detector.detect(view).unwrap().labels[5 * width + 3] > 0, "{min}");
 }

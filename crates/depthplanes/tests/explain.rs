@@ -10,7 +10,7 @@ fn scene(spec: &str) -> SceneFrame {
 }
 
 fn detector(method: &'static MethodInfo, given: &[(&str, f64)], frame: &SceneFrame) -> Detector {
-    Detector::from_method(method.with(given).unwrap()).sensor(frame.sensor)
+    Detector::new(method.with(given).unwrap()).unwrap().sensor(frame.sensor)
 }
 
 fn detector_of(name: &str, given: &[(&str, f64)], frame: &SceneFrame) -> Detector {
@@ -126,7 +126,7 @@ fn each_reason_is_told() {
     map[40 * width + 70] = 0;
     map[50 * width + 50] = 1030;
     let view = DepthView::new(&map, width, height).unwrap();
-    let planar = Planar { noise: 0.002, ..Planar::default() };
+    let planar = Planar::default().noise(0.002);
     let mut detector = Detector::new(planar).unwrap();
     let mut kind = |at| detector.explain(view, at).unwrap().verdict.kind();
     assert_eq!(
@@ -148,7 +148,7 @@ fn each_reason_is_told() {
         (("margin", 20.0), [20, 20], "dropped"),
         (("theta", 1.0), [70, 40], "not_measured"),
     ] {
-        let mut detector = Detector::from_method(ngaf.with(&[given]).unwrap());
+        let mut detector = Detector::new(ngaf.with(&[given]).unwrap()).unwrap();
         let why = detector.explain(view, at).unwrap();
         assert_eq!(why.verdict.kind(), right, "{given:?} {at:?}");
         assert!(right == "plane" || !why.suggestions.is_empty(), "{given:?} {at:?}");

@@ -2,7 +2,7 @@
 
 mod naive;
 
-use depthplanes::fit::{AffineFit, Moments, ValueSums, hessian, metric_covariance};
+use depthplanes::internals::{AffineFit, Moments, ValueSums, hessian, metric_covariance};
 use depthplanes::{Hessian, Intrinsics};
 use naive::Random;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, SMatrix, Vector3, Vector4};

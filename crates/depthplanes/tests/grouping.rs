@@ -2,12 +2,12 @@
 
 mod naive;
 
-use depthplanes::group::{Grouper, Kernel, LinkRule, kernels};
-use depthplanes::select::Selection;
+use depthplanes::internals::Selection;
+use depthplanes::internals::{Compiles, Grouper, Kernel, LinkRule, kernels};
 use depthplanes::{DepthView, Pixel};
 use naive::Random;
 
-fn labels<T: Pixel>(
+fn labels<T: Compiles>(
     view: &DepthView<'_, T>,
     theta: f64,
     min: u32,
@@ -26,7 +26,7 @@ fn labels<T: Pixel>(
 }
 
 /// Compares all kernels and several thread counts with the flood.
-fn check<T: Pixel>(view: &DepthView<'_, T>, theta: f64, min: u32, what: &str) {
+fn check<T: Compiles>(view: &DepthView<'_, T>, theta: f64, min: u32, what: &str) {
     let map: Vec<f64> = view.rows().flatten().map(|&value| value.into()).collect();
     let rule = view.validity();
     let ok = |value: f64| naive::valid(value, rule.sentinel.into(), rule.low.into(), rule.high.into());

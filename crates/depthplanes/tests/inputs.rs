@@ -2,8 +2,8 @@
 
 mod naive;
 
-use depthplanes::group::{Grouper, LinkRule, kernels};
-use depthplanes::map::{MAX_PIXELS, MAX_SIDE};
+use depthplanes::internals::{Grouper, LinkRule, kernels};
+use depthplanes::limits::{MAX_PIXELS, MAX_SIDE};
 use depthplanes::{AnyView, DepthView, Detector, Error, Intrinsics, Measure, Ngaf, Pixel};
 use naive::Random;
 
@@ -99,7 +99,7 @@ fn infinities_are_missing_even_within_an_infinite_range() {
     assert_eq!(view.valid_range(0.5, f32::INFINITY).unwrap().valid_pixels(), 2);
     assert_eq!(view.valid_range(f32::NEG_INFINITY, f32::INFINITY).unwrap().valid_pixels(), 3);
     assert_eq!(view.valid_range(f32::NEG_INFINITY, 0.5).unwrap().valid_pixels(), 1);
-    let mut detector = Detector::new(Ngaf { theta: 1.0, min: 0, window: 3, ..Ngaf::default() }).unwrap();
+    let mut detector = Detector::new(Ngaf::default().theta(1.0).min(0).window(3)).unwrap();
     let found = detector.detect(view.valid_range(0.5, f32::INFINITY).unwrap()).unwrap();
     assert_eq!(found.labels[1], 0);
 }

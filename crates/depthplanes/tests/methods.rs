@@ -2,7 +2,7 @@
 
 mod naive;
 
-use depthplanes::methods::{METHODS, Method, MethodInfo, Param, ParamKind, find};
+use depthplanes::methods::{Configured, METHODS, MethodInfo, Param, ParamKind, find};
 use depthplanes::{AnyView, DepthView, Detection, Detector, Error, Intrinsics, Measure, Sensor};
 use naive::Random;
 use std::collections::HashSet;
@@ -19,12 +19,12 @@ fn is_kebab_case(name: &str) -> bool {
 
 /// The method with one parameter changed, by name and by place; both must agree.
 #[track_caller]
-fn with(method: &MethodInfo, param: &Param, value: f64) -> Result<Box<dyn Method>, Error> {
+fn with(method: &MethodInfo, param: &Param, value: f64) -> Result<Configured, Error> {
     let at = method.params.iter().position(|other| other.name == param.name).unwrap();
     let mut values = method.defaults();
     values[at] = value;
-    let (named, placed) = (method.with(&[(param.name, value)]), (method.build)(&values));
-    let text = |result: &Result<Box<dyn Method>, Error>| result.as_ref().err().map(Error::to_string);
+    let (named, placed) = (method.with(&[(param.name, value)]), method.of_values(&values));
+    let text = |result: &Result<Configured, Error>| result.as_ref().err().map(Error::to_string);
     assert_eq!(text(&named), text(&placed), "{} {} = {value}", method.name, param.name);
     named
 }
@@ -67,7 +67,7 @@ fn methods_are_found_by_name() {
 fn an_unknown_parameter_is_an_error_that_lists_the_known_ones() {
     for method in METHODS {
         for given in ["", "Theta", "no-such-parameter"] {
-            let error = method.with(&[(given, 1.0)]).err().expect("no such parameter");
+            let error = method.with(&[(given, 1.0)]).expect_err("no such parameter");
             let text = error.to_string();
             assert!(matches!(error, Error::Unknown { what: "parameter", .. }));
             assert!(text.contains(&format!("`{given}`")), "{text}");
@@ -100,6 +100,7 @@ fn other_values_are_refused_with_name_value_and_range() {
             ParamKind::Real => {}
             ParamKind::Whole => wrong.extend([param.min + 0.5, param.max - 0.5]),
             ParamKind::OddOrOff => wrong.extend([param.min + 0.5, param.min + 1.0, param.max - 1.0, 0.5, 1.0, 2.0]),
+            kind => panic!("what is wrong for {kind:?}?"),
         }
         for value in wrong {
             if param.kind == ParamKind::OddOrOff && value == 0.0 {
@@ -120,10 +121,9 @@ fn a_method_takes_one_value_for_each_parameter() {
         let right = method.params.len();
         for count in (0..right).chain([right + 1]) {
             let values: Vec<f64> = method.defaults().into_iter().chain([1.0]).take(count).collect();
-            let build = method.build;
-            let panic = catch_unwind(move || build(&values).map(drop)).unwrap_err();
+            let panic = catch_unwind(move || method.of_values(&values).map(drop)).unwrap_err();
             let text = panic.downcast_ref::<String>().expect("a message");
-            assert!(text.contains("one value for each of its parameters"), "{text}");
+            assert!(text.contains("one value for each parameter"), "{text}");
         }
     }
 }
@@ -132,8 +132,8 @@ fn sensors() -> [Sensor; 3] {
     let intrinsics = Intrinsics::new(500.0, 500.0, 20.0, 15.0).ok();
     [
         Sensor::default(),
-        Sensor { measure: Measure::Depth { metres: 0.001 }, intrinsics, ..Sensor::default() },
-        Sensor { measure: Measure::stereo(1.0, 500.0, 0.1, 0.0).unwrap(), intrinsics, ..Sensor::default() },
+        Sensor::default().measure(Measure::Depth { metres: 0.001 }).intrinsics(intrinsics),
+        Sensor::default().measure(Measure::stereo(1.0, 500.0, 0.1, 0.0).unwrap()).intrinsics(intrinsics),
     ]
 }
 
@@ -152,7 +152,7 @@ fn run_all(map: &[u8], width: usize, check: impl Fn(&Detection, &str)) {
         let smallest: Vec<f64> = method.params.iter().map(|param| param.min).collect();
         for values in [method.defaults(), largest, smallest] {
             for sensor in sensors() {
-                let mut detector = Detector::from_method((method.build)(&values).unwrap()).sensor(sensor);
+                let mut detector = Detector::new(method.of_values(&values).unwrap()).unwrap().sensor(sensor);
                 for view in views {
                     let what = format!("{} {values:?} on {width}x{height}", method.name);
                     let found = match detector.detect(view) {
@@ -209,7 +209,7 @@ fn constant_maps_are_one_plane_or_none() {
 #[test]
 fn the_default_of_each_method_finds_a_constant_map() {
     for method in METHODS {
-        let mut detector = Detector::from_method(method.with(&[]).unwrap());
+        let mut detector = Detector::new(method.with(&[]).unwrap()).unwrap();
         let found = detector.detect(DepthView::new(&[9u8; 1200], 40, 30).unwrap()).unwrap();
         assert_eq!((found.planes.len(), found.labelled_share()), (1, 1.0), "{}", method.name);
     }
@@ -219,7 +219,7 @@ fn the_default_of_each_method_finds_a_constant_map() {
 fn the_observer_is_told_the_stages_in_order() {
     let mut random = Random(61);
     for method in METHODS {
-        let mut detector = Detector::from_method(method.with(&[]).unwrap());
+        let mut detector = Detector::new(method.with(&[]).unwrap()).unwrap();
         for _ in 0..20 {
             let map = naive::awkward_map(&mut random, 30, 20);
             let mut told = Vec::new();

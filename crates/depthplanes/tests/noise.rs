@@ -3,7 +3,7 @@
 use depthplanes::methods::Planar;
 use depthplanes::noise::{Estimate, Estimator, MAX_ROWS, NoiseModel, NoiseTable, Patch, SensorNoise};
 use depthplanes::scene::{Random, SensorError, SensorModel, Spec};
-use depthplanes::{DepthView, Detector, Error, Measure, Sensor};
+use depthplanes::{DepthView, Detector, Error, Measure};
 
 const METRES: Measure = Measure::Depth { metres: 1.0 };
 
@@ -258,13 +258,13 @@ fn each_part_is_the_parameters_or_else_the_sensors_and_a_larger_scale_joins_more
     let frame = "room:sensor=kinect,size=320x240".parse::<Spec>().unwrap().frame().unwrap();
     let labels = |params: Planar, noise: [Option<SensorNoise>; 2]| {
         let [noise, smooth_noise] = noise;
-        let sensor = Sensor { noise, smooth_noise, ..frame.sensor };
+        let sensor = frame.sensor.noise(noise).smooth_noise(smooth_noise);
         Detector::new(params).unwrap().sensor(sensor).detect(frame.view()).unwrap().labels.clone()
     };
     let growing = |growth: f64| Some(SensorNoise::Depth { base: 0.0, growth });
     let plain = labels(Planar::default(), [None; 2]);
-    let white = Planar { noise_growth: 0.002, ..Planar::default() };
-    let smooth = Planar { smooth_noise_growth: 0.004, ..Planar::default() };
+    let white = Planar::default().noise_growth(0.002);
+    let smooth = Planar::default().smooth_noise_growth(0.004);
     for (params, of_sensor, another) in [
         (white, [growing(0.002), None], [growing(0.005), None]),
         (smooth, [None, growing(0.004)], [None, growing(0.0001)]),
@@ -275,7 +275,7 @@ fn each_part_is_the_parameters_or_else_the_sensors_and_a_larger_scale_joins_more
         assert_eq!(labels(params, another), by_parameter);
     }
     let planes = |noise_scale: f64| {
-        let labels = labels(Planar { noise_scale, ..Planar::default() }, [None; 2]);
+        let labels = labels(Planar::default().noise_scale(noise_scale), [None; 2]);
         labels.into_iter().max().unwrap()
     };
     let [half, one, three] = [0.5, 1.0, 3.0].map(planes);

@@ -11,17 +11,13 @@ type Point = [f64; 2];
 
 /// A label image as a detection; its planes know their labels alone.
 fn detection(labels: Vec<u16>, width: usize) -> Detection {
-    let plane = |label: u16| Plane {
-        label,
-        pixel_count: labels.iter().filter(|&&other| other == label).count(),
-        share_of_valid: 0.0,
-        bounding_box: PixelBox { u_min: 0, v_min: 0, u_max: 0, v_max: 0 },
-        centroid: [0.0; 2],
-        fit: None,
-        metric: None,
-    };
+    let nowhere = PixelBox { u_min: 0, v_min: 0, u_max: 0, v_max: 0 };
+    let plane = |label: u16| Plane::new(label, labels.iter().filter(|&&other| other == label).count(), nowhere);
     let planes = (1..=labels.iter().copied().max().unwrap_or(0)).map(plane).collect();
-    Detection { width, height: labels.len() / width, labels, planes, ..Detection::default() }
+    let mut detection = Detection::default();
+    (detection.width, detection.height) = (width, labels.len() / width);
+    (detection.labels, detection.planes) = (labels, planes);
+    detection
 }
 
 /// Blocks, stripes, specks and holes of a few labels; planes need not be connected.
@@ -341,8 +337,8 @@ fn detect(
         if holds(u, v) && q > 0.0 { (1.0 / q) as f32 } else { 0.0 }
     };
     let map: Vec<f32> = (0..width * height).map(value).collect();
-    let sensor = Sensor { measure: Measure::Depth { metres: 1.0 }, intrinsics: Some(camera), ..Sensor::default() };
-    let mut detector = Detector::new(Ngaf { theta: 1e6, min: 3, ..Ngaf::default() }).unwrap().sensor(sensor);
+    let sensor = Sensor::default().measure(Measure::Depth { metres: 1.0 }).intrinsics(Some(camera));
+    let mut detector = Detector::new(Ngaf::default().theta(1e6).min(3)).unwrap().sensor(sensor);
     (detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap().clone(), sensor)
 }
 
@@ -440,7 +436,7 @@ fn a_plane_that_reaches_infinity_has_no_area_and_no_outline_in_metres() {
     let map: Vec<f32> = (0..width * height).map(|at| 0.2 + (at / width) as f32).collect();
     let camera = Intrinsics::new(50.0, 50.0, 6.0, -2.0).unwrap();
     let measure = Measure::InverseDepth { slope: 0.1, offset: 0.0 };
-    let sensor = Sensor { measure, intrinsics: Some(camera), ..Sensor::default() };
+    let sensor = Sensor::default().measure(measure).intrinsics(Some(camera));
     let mut detector = Detector::new(Ngaf::default()).unwrap().sensor(sensor);
     let found = detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap();
     assert_eq!(found.planes[0].metric.unwrap().area_m2, None);

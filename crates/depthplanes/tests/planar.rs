@@ -62,7 +62,7 @@ fn the_three_planes_of_a_corner_are_found_with_their_equations() {
             assert!(off < angle, "{sensor}: {off} degrees");
             assert!((metric.distance - right.distance).abs() < 0.02, "{sensor}: {metric:?} {right:?}");
         }
-        let ngaf = Ngaf { theta: if sensor == "clean" { 0.02 } else { 20.0 }, ..Ngaf::default() };
+        let ngaf = Ngaf::default().theta(if sensor == "clean" { 0.02 } else { 20.0 });
         let joined =
             Detector::new(ngaf).unwrap().sensor(frame.sensor).detect(frame.view()).unwrap().planes[0].pixel_count;
         assert!(joined > frame.truth.planes[0].pixel_count * 11 / 10, "ngaf joins planes that meet");
@@ -138,8 +138,8 @@ fn rooms_with_the_errors_of_real_cameras_are_found_for_the_most_part() {
         rooms.print(sensor);
         let smooth = SensorModel::find(sensor).unwrap().error_at(2.0).smooth;
         let stated = match scene(&format!("random:seed=1,sensor={sensor}")).sensor.measure {
-            Measure::InverseDepth { slope, .. } => Planar { smooth_noise: smooth / slope, ..Planar::default() },
-            _ => Planar { smooth_noise_growth: smooth, ..Planar::default() },
+            Measure::InverseDepth { slope, .. } => Planar::default().smooth_noise(smooth / slope),
+            _ => Planar::default().smooth_noise_growth(smooth),
         };
         Rooms::of(sensor, None, 20, stated).print(&format!("{sensor}, smooth part stated"));
         assert!(rooms.f >= least, "{sensor}: F {}", rooms.f);
@@ -169,7 +169,7 @@ fn planes_of_a_disparity_map_need_no_calibration() {
     // Two slanted planes that meet in column 60: 20 + u / 4 and 50 - u / 4.
     let disparity = |u: usize, v: usize| (200 + 4 * v + if u < 60 { 5 * u } else { 600 - 5 * u }) as u16;
     let map: Vec<u16> = (0..width * height).map(|at| disparity(at % width, at / width)).collect();
-    let sensor = Sensor { measure: Measure::Disparity, ..Sensor::default() };
+    let sensor = Sensor::default().measure(Measure::Disparity);
     let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
     let found = detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap();
     assert_eq!(found.planes.len(), 2);
@@ -192,7 +192,7 @@ fn holes_and_a_negative_focal_length_change_no_plane() {
     }
     let Intrinsics { fx, fy, cx, cy } = frame.sensor.intrinsics.unwrap();
     let flipped = Intrinsics::new(fx, -fy, cx, cy).unwrap();
-    let sensor = Sensor { intrinsics: Some(flipped), ..frame.sensor };
+    let sensor = frame.sensor.intrinsics(Some(flipped));
     let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
     let found = detector.detect(DepthView::new(&pixels, frame.width, frame.height).unwrap()).unwrap();
     assert_eq!(found.planes.len(), 3);
@@ -222,7 +222,7 @@ fn planes_of_which_nearly_every_second_pixel_is_missing_stay_whole() {
 fn noise_of_which_no_plane_is_made_has_none() {
     let mut random = Random::new(6);
     let map: Vec<u16> = (0..320 * 240).map(|_| (500.0 + 5000.0 * random.uniform()) as u16).collect();
-    let stated = Planar { noise: 0.002, ..Planar::default() };
+    let stated = Planar::default().noise(0.002);
     let found = Detector::new(stated).unwrap().detect(DepthView::new(&map, 320, 240).unwrap()).unwrap().clone();
     assert_eq!(found.planes.len(), 0);
 }
@@ -233,8 +233,8 @@ fn a_slant_seen_along_rays_of_whole_pixels_is_one_plane_if_that_is_said() {
     let slant = |at: usize, off: f64| 300.0 + 2.0 * ((at % 160) as f64 + off) + 0.5 * (at / 160) as f64;
     let map: Vec<f32> = (0..160 * 120).map(|at| slant(at, random.between(-0.5, 0.5)) as f32).collect();
     let found = |ray: f64| {
-        let stated = Planar { noise: 0.05, ray, ..Planar::default() };
-        let sensor = Sensor { measure: Measure::Disparity, ..Sensor::default() };
+        let stated = Planar::default().noise(0.05).ray(ray);
+        let sensor = Sensor::default().measure(Measure::Disparity);
         let mut detector = Detector::new(stated).unwrap().sensor(sensor);
         let found = detector.detect(DepthView::new(&map, 160, 120).unwrap()).unwrap();
         found.planes.iter().map(|plane| plane.pixel_count).collect::<Vec<_>>()
@@ -252,8 +252,8 @@ fn a_slant_seen_along_rays_of_whole_pixels_is_one_plane_beside_a_wall_if_nothing
     };
     let map: Vec<f32> = (0..160 * 120).map(|at| value(at) as f32).collect();
     let found = |noise: f64, ray: f64| {
-        let stated = Planar { noise, ray, ..Planar::default() };
-        let sensor = Sensor { measure: Measure::Disparity, ..Sensor::default() };
+        let stated = Planar::default().noise(noise).ray(ray);
+        let sensor = Sensor::default().measure(Measure::Disparity);
         let mut detector = Detector::new(stated).unwrap().sensor(sensor);
         let found = detector.detect(DepthView::new(&map, 160, 120).unwrap()).unwrap();
         found.planes.iter().map(|plane| plane.pixel_count).collect::<Vec<_>>()
@@ -281,7 +281,7 @@ fn planes_that_are_grown_over_in_bands_are_whole() {
     let disparity = |at: usize| (100.0 + 0.02 * (at / width) as f64).min(60.0 + 0.04 * (at % width) as f64);
     let map: Vec<f32> = (0..width * height).map(|at| (disparity(at) + sigma * random.gaussian()) as f32).collect();
     for threads in [1, 3] {
-        let sensor = Sensor { measure: Measure::Disparity, ..Sensor::default() };
+        let sensor = Sensor::default().measure(Measure::Disparity);
         let mut detector = Detector::default().sensor(sensor).threads(threads);
         let found = detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap();
         assert_eq!(found.planes.len(), 2, "{threads} threads");
@@ -301,7 +301,7 @@ fn a_surface_seen_edge_on_is_no_plane_and_explain_says_so() {
     // In the middle, 2.5 columns on, a change of s at the seam is one of s / (1 + 2.5 s) of what is there.
     for (per_pixel, is_plane) in [(0.2, true), (2.0, false)] {
         let map = map(per_pixel);
-        let sensor = Sensor { measure: Measure::Depth { metres: 1.0 }, ..Sensor::default() };
+        let sensor = Sensor::default().measure(Measure::Depth { metres: 1.0 });
         let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
         let view = DepthView::new(&map, width, height).unwrap();
         let label = detector.detect(view).unwrap().labels[32 * width + 66];
@@ -322,11 +322,9 @@ fn a_wall_behind_a_large_ball_stays_whole_without_any_noise() {
         if root > 0.0 { (4.0 - root.sqrt()) / (2.0 * a) } else { 4.0 }
     };
     let map: Vec<u16> = (0..width * height).map(|at| (1000.0 * depth(at)).round() as u16).collect();
-    let sensor = Sensor {
-        measure: Measure::Depth { metres: 0.001 },
-        intrinsics: Some(Intrinsics::new(f, f, 319.5, 239.5).unwrap()),
-        ..Sensor::default()
-    };
+    let sensor = Sensor::default()
+        .measure(Measure::Depth { metres: 0.001 })
+        .intrinsics(Some(Intrinsics::new(f, f, 319.5, 239.5).unwrap()));
     let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
     let found = detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap();
     let wall = map.iter().filter(|&&value| value == 4000).count();
@@ -343,7 +341,7 @@ fn the_floor_below_a_low_camera_is_a_plane_however_coarse_the_picture() {
             if y > 0.0 && (near..8.0).contains(&z) { z as f32 } else { 0.0 }
         };
         let map: Vec<f32> = (0..width * height).map(depth).collect();
-        let sensor = Sensor { measure: Measure::Depth { metres: 1.0 }, ..Sensor::default() };
+        let sensor = Sensor::default().measure(Measure::Depth { metres: 1.0 });
         let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
         let found = detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap();
         assert_eq!(found.planes.len(), 1, "{width} x {height}");

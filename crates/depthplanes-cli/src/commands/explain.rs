@@ -10,7 +10,7 @@ use crate::load;
 use crate::run::Recipe;
 use crate::show::significant;
 use depthplanes::Explanation;
-use depthplanes::explanation::{Finding, Limit, Quantity, Suggestion};
+use depthplanes::explanation::{Finding, Quantity, Suggestion};
 use depthplanes::noise::SensorNoise;
 use depthplanes_io::read_noise_table;
 use serde_json::{Map, Value, json};
@@ -66,7 +66,7 @@ fn finding_record(finding: &Finding) -> Value {
 fn quantity_record(quantity: &Quantity) -> Value {
     let mut record = json!({"name": quantity.name, "value": quantity.value, "unit": quantity.unit});
     if let Some(limit) = quantity.limit {
-        let (kind, bound) = words(limit);
+        let (kind, bound) = limit.words();
         record["limit"] = json!({"kind": kind.replace(' ', "_"), "value": bound, "holds": limit.holds(quantity.value)});
     }
     record
@@ -81,14 +81,6 @@ fn suggestion_record(suggestion: &Suggestion) -> Value {
         "planes_before": suggestion.planes_before,
         "planes_after": suggestion.planes_after,
     })
-}
-
-fn words(limit: Limit) -> (&'static str, f64) {
-    match limit {
-        Limit::AtMost(most) => ("at most", most),
-        Limit::AtLeast(least) => ("at least", least),
-        Limit::MoreThan(bound) => ("more than", bound),
-    }
 }
 
 /// The findings with the stage in front, then the verdict and what to change.
@@ -133,7 +125,7 @@ fn shown(quantity: &Quantity) -> String {
     let space = if unit.is_empty() || unit.starts_with(' ') { "" } else { " " };
     let unit = format!("{space}{unit}");
     let limit = quantity.limit.map(|limit| {
-        let (kind, bound) = words(limit);
+        let (kind, bound) = limit.words();
         format!(" ({kind} {})", significant(bound))
     });
     format!("{} {value}{unit}{}", quantity.name, limit.unwrap_or_default())

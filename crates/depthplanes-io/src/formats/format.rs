@@ -27,7 +27,7 @@ impl Limits {
     /// [`Error::Limit`] above [`Limits::max_pixels`], or if `sample_bytes` each exceed
     /// [`Limits::max_bytes`]; [`Error::Unreadable`] for a side of 0 or above 65535.
     pub fn area(&self, format: &'static str, width: u64, height: u64, sample_bytes: usize) -> Result<usize> {
-        let side = 1..=depthplanes::map::MAX_SIDE as u64;
+        let side = 1..=depthplanes::limits::MAX_SIDE as u64;
         if !side.contains(&width) || !side.contains(&height) {
             return Err(Error::Unreadable {
                 format,

@@ -5,7 +5,7 @@ use super::output::Report;
 use super::times::{Spread, Times};
 use depthplanes::detection::{CurvedRegion, PixelBox};
 use depthplanes::methods::ParamKind;
-use depthplanes::{Coplanar, CovarianceSource, Intrinsics, Measure, Plane};
+use depthplanes::{Coplanar, Intrinsics, Measure, Plane};
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
@@ -206,10 +206,7 @@ impl PlaneRecord {
                 centroid_m: metric.centroid_m,
                 area_m2: metric.area_m2,
                 covariance: metric.covariance,
-                covariance_from: match metric.covariance_from {
-                    CovarianceSource::Noise => "noise",
-                    CovarianceSource::Residuals => "residuals",
-                },
+                covariance_from: metric.covariance_from.name(),
             }),
             outline: None,
             parts: Vec::new(),

@@ -23,11 +23,12 @@ pub fn frame() -> Frame {
         pixels: Pixels::U16((0..WIDTH * HEIGHT).map(value).collect()),
         missing: None,
         valid_range: None,
-        sensor: Sensor {
-            measure: Measure::Depth { metres: 0.001 },
-            intrinsics: Some(Intrinsics { fx: 40.0, fy: 40.0, cx: 23.5, cy: 15.5 }),
-            ..Sensor::default()
-        },
+        sensor: Sensor::default().measure(Measure::Depth { metres: 0.001 }).intrinsics(Some(Intrinsics {
+            fx: 40.0,
+            fy: 40.0,
+            cx: 23.5,
+            cy: 15.5,
+        })),
         format: "png",
         encoding: "mm",
         warnings: vec!["made by hand".into()],
@@ -45,7 +46,10 @@ pub fn detection() -> Detection {
     let labels: Vec<u16> = (0..WIDTH * HEIGHT).map(label).collect();
     let planes = (1..=3).map(|label| plane(label, &labels)).collect();
     let valid_pixels = WIDTH * HEIGHT - 28;
-    Detection { width: WIDTH, height: HEIGHT, labels, planes, valid_pixels, ..Detection::default() }
+    let mut detection = Detection::default();
+    (detection.width, detection.height, detection.valid_pixels) = (WIDTH, HEIGHT, valid_pixels);
+    (detection.labels, detection.planes) = (labels, planes);
+    detection
 }
 
 fn plane(label: u16, labels: &[u16]) -> Plane {
@@ -53,28 +57,20 @@ fn plane(label: u16, labels: &[u16]) -> Plane {
     let column = |at: &usize| (at % WIDTH) as u32;
     let row = |at: &usize| (at / WIDTH) as u32;
     let mean = |of: &dyn Fn(&usize) -> u32| mine.iter().map(|at| f64::from(of(at))).sum::<f64>() / mine.len() as f64;
-    let metric = MetricPlane {
-        plane: Hessian { normal: [0.0, 0.0, -1.0], distance: 3.0 },
-        rms_m: 0.002,
-        centroid_m: [0.1, -0.2, 3.0],
-        area_m2: Some(3.5),
-        covariance: [[0.25; 4]; 4],
-        covariance_from: depthplanes::CovarianceSource::Residuals,
+    let mut metric = MetricPlane::new(Hessian { normal: [0.0, 0.0, -1.0], distance: 3.0 }, [0.1, -0.2, 3.0]);
+    (metric.rms_m, metric.area_m2, metric.covariance) = (0.002, Some(3.5), [[0.25; 4]; 4]);
+    let bounding_box = PixelBox {
+        u_min: mine.iter().map(column).min().unwrap(),
+        v_min: mine.iter().map(row).min().unwrap(),
+        u_max: mine.iter().map(column).max().unwrap(),
+        v_max: mine.iter().map(row).max().unwrap(),
     };
-    Plane {
-        label,
-        pixel_count: mine.len(),
-        share_of_valid: mine.len() as f64 / (WIDTH * HEIGHT - 28) as f64,
-        bounding_box: PixelBox {
-            u_min: mine.iter().map(column).min().unwrap(),
-            v_min: mine.iter().map(row).min().unwrap(),
-            u_max: mine.iter().map(column).max().unwrap(),
-            v_max: mine.iter().map(row).max().unwrap(),
-        },
-        centroid: [mean(&column), mean(&row)],
-        fit: (label < 3).then_some(MapFit { gradient: [0.0, -40.0], offset: 3140.0, rms: 0.5 }),
-        metric: (label == 1).then_some(metric),
-    }
+    let mut plane = Plane::new(label, mine.len(), bounding_box);
+    plane.share_of_valid = mine.len() as f64 / (WIDTH * HEIGHT - 28) as f64;
+    plane.centroid = [mean(&column), mean(&row)];
+    plane.fit = (label < 3).then_some(MapFit { gradient: [0.0, -40.0], offset: 3140.0, rms: 0.5 });
+    plane.metric = (label == 1).then_some(metric);
+    plane
 }
 
 pub fn report<'a>(frame: &'a Frame, detection: &'a Detection) -> Report<'a> {

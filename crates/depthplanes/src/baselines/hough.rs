@@ -309,7 +309,7 @@ mod tests {
             ..Sensor::default()
         };
         let method = find("hough").unwrap().with(&[]).unwrap();
-        let mut detector = crate::Detector::from_method(method).sensor(sensor);
+        let mut detector = crate::Detector::new(method).unwrap().sensor(sensor);
         let found = detector.detect(DepthView::new(&wall, 160, 120).unwrap()).unwrap();
         let sizes: Vec<_> = found.planes.iter().map(|plane| plane.pixel_count).collect();
         assert!(sizes.len() == 1 && sizes[0] > 160 * 118, "{sizes:?}");

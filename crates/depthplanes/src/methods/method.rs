@@ -56,8 +56,9 @@ pub trait Parameters: sealed::Sealed {
 pub(crate) mod sealed {
     /// Nobody else's types are a method's parameters.
     pub trait Sealed {}
-    impl Sealed for super::Configured {}
 }
+
+impl sealed::Sealed for Configured {}
 
 impl Parameters for Configured {
     fn configured(self) -> Result<Configured> {

@@ -16,9 +16,9 @@ use crate::baselines;
 use crate::error::{Error, Result};
 use method::names;
 pub use method::{Configured, MethodInfo, Parameters};
-#[doc(hidden)]
-pub use ngaf::Enhancer;
 pub use ngaf::Ngaf;
+#[doc(hidden)]
+pub use ngaf::{Enhancer, Fillable};
 pub use parameter::{Param, ParamKind};
 pub use planar::Planar;
 

@@ -72,3 +72,19 @@ pub(crate) fn check(params: &[Param], values: &[f64]) -> Result<()> {
     assert_eq!(values.len(), params.len(), "one value for each parameter");
     params.iter().zip(values).try_for_each(|(param, &value)| param.check(value))
 }
+
+/// Gives a struct of parameters a setter for each, named as the field.
+macro_rules! setters {
+    ($params:ident: $($name:ident: $kind:ty),+ $(,)?) => {
+        impl $params {
+            $(
+                #[doc = concat!("The same with another [`", stringify!($params), "::", stringify!($name), "`](#structfield.", stringify!($name), ").")]
+                #[must_use]
+                pub fn $name(self, $name: $kind) -> Self {
+                    $params { $name, ..self }
+                }
+            )+
+        }
+    };
+}
+pub(crate) use setters;

@@ -5,6 +5,15 @@
 
 use crate::error::{Error, Result};
 
+/// A truth plane and the predicted plane that stands for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Match {
+    /// Label in the truth.
+    pub truth: u16,
+    /// Label in the prediction.
+    pub prediction: u16,
+}
+
 /// A label and its pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Region {

@@ -4,13 +4,15 @@
 //! Which planes belong together is said by [`super::segcomp`] or [`super::evops`]; the equations
 //! are asked for by label, and planes without one are passed over.
 
-use super::{Match, SegComp};
+use super::contingency::Match;
+use super::segcomp::SegComp;
 use crate::camera::Hessian;
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// How far a plane is from the true one.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PlaneError {
     /// Angle between the normals, degrees, 0..=90.
     pub normal_deg: f64,

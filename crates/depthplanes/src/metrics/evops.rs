@@ -1,8 +1,7 @@
 //! EVOPS: the measures of the PyPI package `evops` 1.0.0 (Kornilova et al., *EVOPS Benchmark:
 //! Evaluation of Plane Segmentation from RGBD and LiDAR Data*, 2022), equal to it to rounding.
 
-use super::Match;
-use super::contingency::{Contingency, Overlap};
+use super::contingency::{Contingency, Match, Overlap};
 use std::collections::BTreeMap;
 
 /// Two planes with at least this intersection over union are one.
@@ -13,6 +12,7 @@ pub const IOU_PART: f64 = 0.2;
 
 /// The measures, all 0..=1. As in the package a share of no planes is 0.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Evops {
     /// Planes that are one by [`IOU_FULL`], by truth label.
     pub matched: Vec<Match>,

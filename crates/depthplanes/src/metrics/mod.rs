@@ -28,19 +28,10 @@ mod partition;
 mod segcomp;
 mod sequence;
 
-pub use contingency::{Contingency, Overlap, Region};
+pub use contingency::{Contingency, Match, Overlap, Region};
 pub use equations::{PlaneError, adjacent, angle_errors, plane_error, plane_errors};
 pub use evops::{Evops, IOU_FULL, IOU_PART, evops};
 pub use partial::{Fate, NOT_PLANAR, Partial, Surface, SurfaceCounts, UNLABELLED, partial};
 pub use partition::{Partition, partition};
 pub use segcomp::{SegComp, Split, Tolerance, segcomp};
 pub use sequence::{NextFrame, STEADY_PIXELS, Sequence, next_frame};
-
-/// A truth plane and the predicted plane that stands for it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Match {
-    /// Label in the truth.
-    pub truth: u16,
-    /// Label in the prediction.
-    pub prediction: u16,
-}

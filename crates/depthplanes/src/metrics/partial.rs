@@ -30,6 +30,7 @@ const PIECE: u64 = 5;
 
 /// What became of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Fate {
     /// One plane covers at least 80 % of it, and at least 80 % of that plane's labelled pixels lie on it or on surfaces
     /// that are coplanar with it.
@@ -44,6 +45,7 @@ pub enum Fate {
 
 /// A labelled surface and what became of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Surface {
     /// Its label and its pixels.
     pub region: Region,
@@ -55,6 +57,7 @@ pub struct Surface {
 
 /// The measures of one frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Partial {
     /// The labelled surfaces, by label.
     pub surfaces: Vec<Surface>,
@@ -80,6 +83,7 @@ impl Partial {
 
 /// Surfaces by what became of them. Those of several frames are added up, so that a frame weighs as much as it has surfaces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct SurfaceCounts {
     /// All surfaces.
     pub surfaces: u64,

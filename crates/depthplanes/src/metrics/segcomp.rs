@@ -7,8 +7,7 @@
 //! f and k of SynPEB (Schaefer et al., *A Maximum Likelihood Approach to Extract Finite Planes from
 //! 3-D Laser Scans*, ICRA 2019) follow from the correct ones.
 
-use super::Match;
-use super::contingency::{Contingency, Overlap};
+use super::contingency::{Contingency, Match, Overlap};
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -55,6 +54,7 @@ pub struct Split {
 /// `under_segmented` and `missed`; each predicted plane in exactly one of `correct`, the parts of
 /// `over_segmented`, `under_segmented` and `noise`. All are sorted by label.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SegComp {
     /// Truth planes found by one predicted plane.
     pub correct: Vec<Match>,

@@ -5,8 +5,8 @@
 //! recording will do; but what is steadily wrong, such as a single plane for all pixels, is steady as well, and a fast
 //! camera lowers the overlaps of a perfect detector too. Hold figures of the same recording against each other only.
 
-use super::IOU_FULL;
 use super::contingency::Contingency;
+use super::evops::IOU_FULL;
 use crate::error::Result;
 
 /// Pixels from which a plane is looked for in the next frame; smaller ones come and go with the noise and with what the
@@ -15,6 +15,7 @@ pub const STEADY_PIXELS: u64 = 5000;
 
 /// What became of a frame's large planes in the next frame.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct NextFrame {
     /// For each plane of at least [`STEADY_PIXELS`] pixels its label and its best intersection over union (0..=1) with a
     /// plane of the next frame, 0 where there is none; by label.

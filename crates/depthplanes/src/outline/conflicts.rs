@@ -6,9 +6,9 @@
 //! other only if a chord passed over one of them: the winding numbers of a ring's point can change
 //! only if the point lies between a chord and the corners that it stands for.
 
-use super::simplify::{Cycle, Segment};
+use super::chord::{Cycle, Segment};
+use super::corner::{Corner, turn};
 use super::trace::TracedRing;
-use super::{Corner, turn};
 
 /// A straight piece of a simplified ring.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@
 //! picture. The rows' first and last corners come in order, so that the monotone chain (Andrew 1979)
 //! needs no sorting.
 
-use super::{Corner, turn};
+use super::corner::{Corner, turn};
 
 /// Finds hulls; reuses its memory.
 #[derive(Debug, Default)]

@@ -2,9 +2,12 @@
 //!
 //! Corners are kept as whole numbers; points are worked out where they are asked for.
 
-use super::Corner;
-use super::rectangle::Rectangle;
+use super::corner::{Corner, point};
+use super::hull::Huller;
+use super::rectangle::{Fitter, Rectangle};
+use super::trace::TracedRing;
 use crate::camera::{Hessian, Intrinsics};
+use crate::detection::Plane;
 use std::ops::Range;
 
 /// The outlines of a detection's planes. An [`super::Outliner`] owns one and reuses its memory.
@@ -36,12 +39,67 @@ pub(super) struct PlaneRecord {
     pub(super) rectangle_m: Option<Rectangle<3>>,
 }
 
-/// The picture point of a corner.
-pub(super) fn point(corner: Corner) -> [f64; 2] {
-    corner.map(|x| f64::from(x) - 0.5)
+/// How many rings, corners and corners of hulls there are.
+#[derive(Clone, Copy)]
+pub(super) struct Ends {
+    rings: usize,
+    corners: usize,
+    hulls: usize,
 }
 
 impl Outlines {
+    pub(super) fn clear(&mut self, camera: Option<&Intrinsics>) {
+        self.camera = camera.copied();
+        self.corners.clear();
+        self.hulls.clear();
+        self.rings.clear();
+        self.planes.clear();
+    }
+
+    pub(super) fn ends(&self) -> Ends {
+        Ends { rings: self.rings.len(), corners: self.corners.len(), hulls: self.hulls.len() }
+    }
+
+    /// Adds rings of those corners that are kept.
+    pub(super) fn add_rings(&mut self, rings: &[TracedRing], corners: &[Corner], keep: &[bool]) {
+        for ring in rings {
+            let start = self.corners.len();
+            self.corners.extend(ring.range().filter(|&at| keep[at]).map(|at| corners[at]));
+            face_camera(&mut self.corners[start..], self.camera);
+            self.rings.push(RingRecord { corners: start..self.corners.len(), is_hole: ring.is_hole });
+        }
+    }
+
+    /// Adds the hull of the outer rings.
+    pub(super) fn add_hull(&mut self, huller: &mut Huller, rings: &[TracedRing], corners: &[Corner]) {
+        let start = self.hulls.len();
+        let outer = rings.iter().filter(|ring| !ring.is_hole);
+        huller.hull(outer.flat_map(|ring| &corners[ring.range()]), &mut self.hulls);
+        face_camera(&mut self.hulls[start..], self.camera);
+    }
+
+    /// Adds the plane of the rings and the hull since `first`.
+    pub(super) fn add_plane(&mut self, fitter: &mut Fitter, plane: &Plane, first: Ends) {
+        let (surface, hull) = (self.surface(plane, first), &self.hulls[first.hulls..]);
+        let record = PlaneRecord {
+            label: plane.label,
+            rings: first.rings..self.rings.len(),
+            hull: first.hulls..self.hulls.len(),
+            surface,
+            rectangle_px: fitter.on_picture(hull),
+            rectangle_m: surface.zip(self.camera).map(|seen| fitter.on_plane(hull, &seen)),
+        };
+        self.planes.push(record);
+    }
+
+    /// The plane in metres, if each corner since `first` lies before infinity on it.
+    fn surface(&self, plane: &Plane, first: Ends) -> Option<Hessian> {
+        let surface = plane.metric.filter(|metric| metric.area_m2.is_some())?.plane;
+        let camera = self.camera?;
+        let mut corners = self.corners[first.corners..].iter().chain(&self.hulls[first.hulls..]);
+        corners.all(|&corner| surface.point_at(point(corner), &camera).is_some()).then_some(surface)
+    }
+
     /// How far rings may deviate from the pixels' cracks, pixels.
     pub fn tolerance_px(&self) -> f64 {
         self.tolerance_px
@@ -148,5 +206,14 @@ impl<'a> Ring<'a> {
         let (plane, camera) = self.surface?;
         let on_plane = move |&corner| plane.point_at(point(corner), &camera).expect("checked when it was made");
         Some(self.corners.iter().map(on_plane))
+    }
+}
+
+/// Rings are traced counter-clockwise on the picture; where that is mirrored, they turn round, but
+/// for their first corner.
+fn face_camera(ring: &mut [Corner], camera: Option<Intrinsics>) {
+    let mirrored = camera.is_some_and(|camera| camera.fx * camera.fy < 0.0);
+    if let (true, [_, others @ ..]) = (mirrored, ring) {
+        others.reverse();
     }
 }

@@ -4,8 +4,7 @@
 //! Shapira 1975), so that four calipers that turn with the edges (Toussaint 1983) find it in one
 //! round.
 
-use super::Corner;
-use super::outlines::point;
+use super::corner::{Corner, point};
 use crate::camera::{Hessian, Intrinsics};
 
 /// A rectangle in N dimensions: pixels on the picture, metres in camera coordinates on the plane.

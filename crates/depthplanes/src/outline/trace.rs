@@ -8,7 +8,7 @@
 //! ring that comes to a point for the second time encloses background in between; that part is cut
 //! off as a ring of its own, so that every ring is a simple polygon.
 
-use super::Corner;
+use super::corner::Corner;
 use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::limits::{MAX_PIXELS, MAX_SIDE};

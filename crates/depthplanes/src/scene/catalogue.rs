@@ -7,21 +7,14 @@ use super::clutter;
 use super::exact::unit;
 use super::pose::Pose;
 use super::room;
+use super::staged::Staged;
 use super::surfaces::{Place, Scene};
 use crate::error::{Error, Result};
 use crate::util::random::Random;
 
-/// A scene and the place of the camera in it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Staged {
-    /// The surfaces.
-    pub scene: Scene,
-    /// The camera's place.
-    pub pose: Pose,
-}
-
 /// One row of [`SCENES`].
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct SceneInfo {
     /// The name in a [`super::Spec`].
     pub name: &'static str,

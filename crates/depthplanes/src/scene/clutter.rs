@@ -1,7 +1,7 @@
 //! Scenes drawn from a seed: where boxes, balls, columns and ramps happen to stand.
 
-use super::catalogue::Staged;
 use super::pose::Pose;
+use super::staged::Staged;
 use super::surfaces::{Place, Scene};
 use crate::util::random::Random;
 

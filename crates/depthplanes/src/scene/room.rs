@@ -2,8 +2,8 @@
 //!
 //! Lengths are metres of ordinary furniture. The seed moves and turns what could be moved.
 
-use super::catalogue::Staged;
 use super::pose::Pose;
+use super::staged::Staged;
 use super::surfaces::{Place, Scene};
 use crate::util::random::Random;
 

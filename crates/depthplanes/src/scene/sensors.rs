@@ -7,22 +7,23 @@
 mod depth_camera;
 mod edges;
 mod error;
+pub(super) mod exposure;
 mod field;
 mod rows;
 
 pub use error::SensorError;
 
-use super::ScenePixels;
-use super::cast::{Cast, Caster};
+use super::frame::ScenePixels;
 use super::pose::{Camera, KINECT_FOCAL_PX};
-use super::surfaces::Scene;
 use crate::camera::Measure;
 use crate::error::{Error, Result};
 use crate::util::random::Random;
 use depth_camera::{DepthCamera, Output};
+use exposure::{Exposure, millimetres};
 
 /// A depth camera's behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SensorModel {
     /// Exact depth, `f32` metres.
     Clean,
@@ -48,6 +49,7 @@ pub enum SensorModel {
 
 /// One row of [`SENSORS`].
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct SensorInfo {
     /// The name in a [`super::Spec`].
     pub name: &'static str,
@@ -201,12 +203,6 @@ impl SensorModel {
     }
 }
 
-/// Metres to whole millimetres; 0 for what 16 bits cannot hold.
-fn millimetres(depth_m: f64) -> u16 {
-    let mm = (depth_m * 1000.0 + 0.5).floor();
-    if (1.0..=65_535.0).contains(&mm) { mm as u16 } else { 0 }
-}
-
 /// A quarter of a pixel per unit; 0 for what the other camera does not see, what 8 bits cannot
 /// hold (nearer than 0.91 m at 640 columns) and what is further than half a unit.
 fn disparities(exposure: &Exposure<'_>) -> Vec<u8> {
@@ -217,49 +213,4 @@ fn disparities(exposure: &Exposure<'_>) -> Vec<u8> {
         if !hidden && (1.0..=255.0).contains(&value) { value as u8 } else { 0 }
     };
     exposure.seen.depth_m.iter().zip(hidden).map(unit).collect()
-}
-
-/// The exact picture, with what a sensor model may ask about it.
-pub(super) struct Exposure<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) camera: &'a Camera,
-    pub(super) seen: &'a Cast,
-}
-
-impl Exposure<'_> {
-    /// Which pixels show points that an eye `baseline_m` to the right of the camera does not see
-    /// because something stands between: shadows of a projector there, occlusions of a second
-    /// camera there. They lie to the left of near things. With `bounded`, points left or right of
-    /// the other eye's own picture count as hidden too.
-    ///
-    /// In a rectified pair the ray from the other eye stays in the same row, at column
-    /// `u - fx baseline / z`.
-    fn hidden_from_right(&self, baseline_m: f64, bounded: bool) -> Vec<bool> {
-        let Camera { intrinsics, width, height, .. } = *self.camera;
-        let other = Caster::new(self.scene, intrinsics, &self.camera.extrinsics().shifted_right(baseline_m));
-        let mut hidden = Vec::with_capacity(width * height);
-        for (v, depths) in self.seen.depth_m.chunks(width).enumerate() {
-            let row = other.row(v as f64);
-            for (u, &z) in depths.iter().enumerate() {
-                let column = u as f64 - intrinsics.fx * baseline_m / z;
-                let outside = bounded && !(-0.5..width as f64 - 0.5).contains(&column);
-                hidden.push(z > 0.0 && (outside || other.blocked([column, v as f64], 1.0 / z, &row)));
-            }
-        }
-        hidden
-    }
-
-    /// The pixel `step` = (columns, rows) away from pixel `at`, if it is in the picture.
-    fn beside(&self, at: usize, step: [isize; 2]) -> Option<usize> {
-        let (width, height) = (self.camera.width, self.camera.height);
-        let u = (at % width).checked_add_signed(step[0]).filter(|&u| u < width)?;
-        let v = (at / width).checked_add_signed(step[1]).filter(|&v| v < height)?;
-        Some(v * width + u)
-    }
-
-    /// Whether two pixels show different surfaces at depths more than `least_m` apart.
-    fn jump(&self, a: usize, b: usize, least_m: f64) -> bool {
-        let Cast { depth_m, surfaces, .. } = self.seen;
-        surfaces[a] != surfaces[b] && (depth_m[a] - depth_m[b]).abs() > least_m
-    }
 }

@@ -4,9 +4,10 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::catalogue::{SceneInfo, find};
+use super::frame::SceneFrame;
 use super::pose::Camera;
+use super::render::render;
 use super::sensors::SensorModel;
-use super::{SceneFrame, render};
 use crate::error::{Error, Result};
 use crate::limits::MAX_SIDE;
 

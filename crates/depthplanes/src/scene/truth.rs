@@ -11,6 +11,7 @@ use crate::camera::Hessian;
 /// sides of a doorway, is one plane with one label. Methods that name connected regions are
 /// measured against [`Truth::pieces`].
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Truth {
     /// Columns.
     pub width: usize,
@@ -32,6 +33,7 @@ pub struct Truth {
 
 /// One plane of the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct TruthPlane {
     /// Its value in the label image, 1..=65535.
     pub label: u16,

@@ -18,9 +18,13 @@ pub(crate) fn passed_over() -> usize {
     PASSED_OVER.load(Ordering::Relaxed)
 }
 
+/// An instruction set's name, and whether this processor has it.
+#[cfg(test)]
+type Level = (&'static str, fn() -> bool);
+
 /// Instruction sets in tests: name, and whether this processor has it. In the order of the kernels of grouping.
 #[cfg(test)]
-const LEVELS: &[(&str, fn() -> bool)] = &[
+const LEVELS: &[Level] = &[
     #[cfg(target_arch = "x86_64")]
     ("avx512", has_avx512),
     #[cfg(target_arch = "x86_64")]

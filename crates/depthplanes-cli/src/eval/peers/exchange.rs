@@ -4,9 +4,7 @@
 //! is unknown, depth is in median depths and the camera is [`Intrinsics::assumed`], as for `ransac`.
 
 use crate::failure::{Failure, Outcome};
-use depthplanes::describe::{Describer, Seen};
-use depthplanes::select::LabelledRun;
-use depthplanes::{DepthView, Detection, Intrinsics, Measure, Pixel, with_view};
+use depthplanes::{DepthView, Detection, Intrinsics, Measure, Pixel, describe_labels, with_view};
 use depthplanes_io::formats::DecodeOptions;
 use depthplanes_io::outputs::{map_npy, write_file};
 use depthplanes_io::{Frame, LabelImage, Pixels, read_labels};
@@ -80,89 +78,5 @@ pub(super) fn take(frame: &Frame, file: &Path) -> Outcome<Detection> {
             frame.width, frame.height
         )));
     }
-    Ok(with_view!(frame.view()?, view => described(frame, &view, labels)))
-}
-
-fn described<T: Pixel>(frame: &Frame, view: &DepthView<'_, T>, mut labels: Vec<u16>) -> Detection {
-    let validity = view.validity();
-    labels
-        .iter_mut()
-        .zip(view.rows().flatten())
-        .filter(|(_, value)| !validity.holds(**value))
-        .for_each(|(label, _)| *label = 0);
-    by_size(&mut labels);
-    let (width, height, valid_pixels) = (view.width(), view.height(), view.valid_pixels());
-    let runs = runs(&labels, width);
-    let (mut describer, mut planes) = (Describer::default(), Vec::new());
-    describer.tally(view, &runs, 0, &frame.sensor, 1);
-    let seen = Seen { sensor: &frame.sensor, noise: None, valid_pixels };
-    describer.describe(view, &runs, &seen, 1, &mut planes);
-    Detection { width, height, labels, planes, valid_pixels, ..Detection::default() }
-}
-
-/// Renames labels: 1, 2, .. by decreasing number of pixels, as ours are.
-fn by_size(labels: &mut [u16]) {
-    let mut sizes = vec![0usize; usize::from(u16::MAX) + 1];
-    labels.iter().for_each(|&label| sizes[usize::from(label)] += 1);
-    let mut order: Vec<usize> = (1..sizes.len()).filter(|&label| sizes[label] > 0).collect();
-    order.sort_by_key(|&label| std::cmp::Reverse(sizes[label]));
-    let mut names = vec![0u16; sizes.len()];
-    order.iter().zip(1..).for_each(|(&label, name)| names[label] = name);
-    labels.iter_mut().for_each(|label| *label = names[usize::from(*label)]);
-}
-
-/// Stretches of rows with the same label.
-fn runs(labels: &[u16], width: usize) -> Vec<LabelledRun> {
-    let mut runs = Vec::new();
-    for (v, row) in (0..).zip(labels.chunks(width)) {
-        let mut u_first = 0;
-        for stretch in row.chunk_by(|a, b| a == b) {
-            let end = u_first + stretch.len() as u32;
-            if stretch[0] > 0 {
-                runs.push(LabelledRun { v, u_first, u_last: end - 1, label: stretch[0] });
-            }
-            u_first = end;
-        }
-    }
-    runs
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn planes_are_named_by_size_and_their_rows_are_cut_where_the_label_changes() {
-        let mut labels = vec![9, 9, 4, 4, 4, 0, 7, 4];
-        by_size(&mut labels);
-        assert_eq!(labels, [2, 2, 1, 1, 1, 0, 3, 1]);
-        let found: Vec<[u32; 4]> =
-            runs(&labels, 4).iter().map(|run| [run.v, run.u_first, run.u_last, run.label.into()]).collect();
-        assert_eq!(found, [[0, 0, 1, 2], [0, 2, 3, 1], [1, 0, 0, 1], [1, 2, 2, 3], [1, 3, 3, 1]]);
-    }
-
-    #[test]
-    fn a_described_plane_is_the_one_in_the_map() {
-        let width = 20;
-        let value = |at: usize| 1000.0 + 3.0 * (at % width) as f32 - 2.0 * (at / width) as f32;
-        let mut values: Vec<f32> = (0..width * 10).map(value).collect();
-        values[3] = f32::NAN;
-        let view = DepthView::new(&values, width, 10).unwrap();
-        let pixels = Pixels::F32(values.clone());
-        let frame = Frame {
-            width,
-            height: 10,
-            pixels,
-            missing: None,
-            valid_range: None,
-            sensor: depthplanes::Sensor::default(),
-            format: "npy",
-            encoding: "millimetre",
-            warnings: Vec::new(),
-        };
-        let found = described(&frame, &view, vec![5; 200]);
-        let fit = found.planes[0].fit.unwrap();
-        assert_eq!((found.planes.len(), found.planes[0].pixel_count, found.labels[3]), (1, 199, 0));
-        assert!((fit.gradient[0] - 3.0).abs() < 1e-9 && (fit.gradient[1] + 2.0).abs() < 1e-9, "{fit:?}");
-    }
+    Ok(describe_labels(frame.view()?, labels, &frame.sensor)?)
 }

@@ -18,7 +18,7 @@ use crate::detection::Detection;
 use crate::error::Result;
 use crate::explanation::Explanation;
 use crate::map::{AnyView, with_view};
-pub use enhance::Enhancer;
+pub use enhance::{Enhancer, Fillable};
 use explain::explain;
 pub use parameters::Ngaf;
 use parameters::PARAMS;

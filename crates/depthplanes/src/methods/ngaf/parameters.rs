@@ -2,7 +2,7 @@
 
 use super::enhance::WINDOW;
 use crate::limits::MAX_SIDE;
-use crate::methods::parameter::{Param, ParamKind, defaults};
+use crate::methods::parameter::{Param, ParamKind, defaults, setters};
 use crate::statistics::Tally;
 
 pub(super) const PARAMS: &[Param] = &[
@@ -78,8 +78,15 @@ pub(super) const PARAMS: &[Param] = &[
     },
 ];
 
-/// Parameters of the method `ngaf`; the defaults are the paper's.
+/// Parameters of the method `ngaf`: the defaults, which are the paper's, changed by setters.
+///
+/// ```
+/// use depthplanes::{Detector, Ngaf};
+/// let detector = Detector::new(Ngaf::default().theta(2.0).min(256))?;
+/// # Ok::<(), depthplanes::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Ngaf {
     /// Largest difference between neighbours of one group, map units, 0 and up (section 3c).
     pub theta: f64,
@@ -129,3 +136,5 @@ impl Default for Ngaf {
         Self::from_values(&defaults(PARAMS))
     }
 }
+
+setters!(Ngaf: theta: f64, min: u32, window: u32, passes: u32, max_rms: f64, min_fill: f64, margin: u32);

@@ -105,7 +105,10 @@ impl Source {
         let finding = Finding::new("map", subject, "the map was enlarged by repeating pixels");
         explanation.findings.insert(0, finding.with("columns", x, "").with("rows", y, ""));
         explanation.verdict = self.verdict(explanation.verdict, runner.params.min, factor, &out, at);
-        explanation.suggestions = retried(explanation.suggestions, info, runner, map, job.sensor, at, &out, factor);
+        let values = runner.params.values();
+        let planes = out.planes.len();
+        let tries = Tries { info, values: &values, map: (*map).into(), sensor: job.sensor, at, planes };
+        explanation.suggestions = retried(explanation.suggestions, &tries, factor);
         explanation.at = at;
         Ok(explanation)
     }
@@ -134,18 +137,7 @@ impl Source {
 }
 
 /// The suggestions for a source pixel that work on the whole map too.
-fn retried<T: Pixel>(
-    suggestions: Vec<Suggestion>,
-    info: &'static MethodInfo,
-    runner: &Runner,
-    map: &DepthView<'_, T>,
-    sensor: Sensor,
-    at: [usize; 2],
-    out: &Detection,
-    [x, y]: [f64; 2],
-) -> Vec<Suggestion> {
-    let values = runner.params.values();
-    let tries = Tries { info, values: &values, map: (*map).into(), sensor, at, planes: out.planes.len() };
+fn retried(suggestions: Vec<Suggestion>, tries: &Tries<'_>, [x, y]: [f64; 2]) -> Vec<Suggestion> {
     let of_whole = |(name, value): (&'static str, f64)| match name {
         "min" => (name, (value * x.floor() * y.floor()).floor()),
         _ => (name, value),

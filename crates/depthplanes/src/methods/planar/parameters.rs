@@ -3,7 +3,7 @@
 use super::region::{Planes, Region};
 use crate::methods::finish::MIN;
 use crate::methods::noise::{NOISE, NOISE_GROWTH, NOISE_SCALE, SMOOTH_NOISE, SMOOTH_NOISE_GROWTH, stated};
-use crate::methods::parameter::{Param, ParamKind, defaults};
+use crate::methods::parameter::{Param, ParamKind, defaults, setters};
 use crate::noise::scales::{Errors, RAY};
 use crate::noise::{NoiseModel, Rounding, SensorNoise, Space};
 use crate::sensor::Sensor;
@@ -47,8 +47,15 @@ pub(super) const PARAMS: &[Param] = &[
     },
 ];
 
-/// Parameters of the method `planar`.
+/// Parameters of the method `planar`: the defaults, changed by setters.
+///
+/// ```
+/// use depthplanes::{Detector, Planar};
+/// let detector = Detector::new(Planar::default().min(500).inlier_threshold(3.0))?;
+/// # Ok::<(), depthplanes::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Planar {
     /// A plane has strictly more pixels than this.
     pub min: u32,
@@ -148,3 +155,8 @@ impl Default for Planar {
         Self::from_values(&defaults(PARAMS))
     }
 }
+
+setters!(
+    Planar: min: u32, min_area: f64, noise: f64, noise_growth: f64, smooth_noise: f64, smooth_noise_growth: f64,
+    noise_scale: f64, ray: f64, inlier_threshold: f64,
+);

@@ -6,7 +6,7 @@
 
 use super::edges::Edges;
 use super::error::ErrorModel;
-use super::{Exposure, millimetres};
+use super::exposure::{Exposure, millimetres};
 use crate::util::random::Random;
 
 /// What a second eye to the right of the camera does not see is missing.

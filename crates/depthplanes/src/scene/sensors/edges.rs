@@ -3,7 +3,7 @@
 //! In: the exact picture and random draws. Out: for each pixel the depth that it takes for its own,
 //! before any other error.
 
-use super::Exposure;
+use super::exposure::Exposure;
 use crate::scene::pose::KINECT_FOCAL_PX;
 use crate::util::random::Random;
 

@@ -1,0 +1,107 @@
+//! The planes of a label image that somebody else made.
+//!
+//! In: a map and a label for each of its pixels. Out: a detection as a method would give it: records of the planes, fitted
+//! to their pixels, under labels by decreasing size.
+
+use crate::components::selection::LabelledRun;
+use crate::detection::Detection;
+use crate::error::{Error, Result};
+use crate::map::{AnyView, DepthView, Pixel, with_view};
+use crate::sensor::Sensor;
+use crate::statistics::{Describer, Seen};
+
+/// Describes the planes of a label image, row by row, 0 = none. They get new labels, 1, 2, .. by decreasing number of
+/// pixels; pixels of the map that are missing lose theirs.
+///
+/// # Errors
+/// [`Error::Length`] unless there is a label for each pixel.
+///
+/// ```
+/// use depthplanes::{DepthView, Sensor, describe_labels};
+/// let depth_mm: [u16; 8] = [1000, 1001, 1002, 2000, 1000, 1001, 1002, 0];
+/// let found = describe_labels(DepthView::new(&depth_mm, 4, 2)?, vec![7, 7, 7, 3, 7, 7, 7, 3], &Sensor::default())?;
+/// assert_eq!(found.labels, [1, 1, 1, 2, 1, 1, 1, 0]);
+/// assert!((found.planes[0].fit.unwrap().gradient[0] - 1.0).abs() < 1e-9);
+/// # Ok::<(), depthplanes::Error>(())
+/// ```
+pub fn describe_labels<'m>(map: impl Into<AnyView<'m>>, labels: Vec<u16>, sensor: &Sensor) -> Result<Detection> {
+    let map = map.into();
+    let pixels = map.width() * map.height();
+    if labels.len() != pixels {
+        return Err(Error::Length { given: labels.len(), least: pixels, most: pixels });
+    }
+    Ok(with_view!(map, map => described(&map, labels, sensor)))
+}
+
+fn described<T: Pixel>(map: &DepthView<'_, T>, mut labels: Vec<u16>, sensor: &Sensor) -> Detection {
+    let validity = map.validity();
+    let pixels = labels.iter_mut().zip(map.rows().flatten());
+    pixels.filter(|(_, value)| !validity.holds(**value)).for_each(|(label, _)| *label = 0);
+    by_size(&mut labels);
+    let (width, height, valid_pixels) = (map.width(), map.height(), map.valid_pixels());
+    let runs = runs(&labels, width);
+    let (mut describer, mut planes) = (Describer::default(), Vec::new());
+    describer.tally(map, &runs, 0, sensor, 1);
+    let seen = Seen { sensor, noise: None, valid_pixels };
+    describer.describe(map, &runs, &seen, 1, &mut planes);
+    Detection { width, height, labels, planes, valid_pixels, ..Detection::default() }
+}
+
+/// Renames labels: 1, 2, .. by decreasing number of pixels, as ours are.
+fn by_size(labels: &mut [u16]) {
+    let mut sizes = vec![0usize; usize::from(u16::MAX) + 1];
+    labels.iter().for_each(|&label| sizes[usize::from(label)] += 1);
+    let mut order: Vec<usize> = (1..sizes.len()).filter(|&label| sizes[label] > 0).collect();
+    order.sort_by_key(|&label| std::cmp::Reverse(sizes[label]));
+    let mut names = vec![0u16; sizes.len()];
+    order.iter().zip(1..).for_each(|(&label, name)| names[label] = name);
+    labels.iter_mut().for_each(|label| *label = names[usize::from(*label)]);
+}
+
+/// Stretches of rows with the same label.
+fn runs(labels: &[u16], width: usize) -> Vec<LabelledRun> {
+    let mut runs = Vec::new();
+    for (v, row) in (0..).zip(labels.chunks(width)) {
+        let mut u_first = 0;
+        for stretch in row.chunk_by(|a, b| a == b) {
+            let end = u_first + stretch.len() as u32;
+            if stretch[0] > 0 {
+                runs.push(LabelledRun { v, u_first, u_last: end - 1, label: stretch[0] });
+            }
+            u_first = end;
+        }
+    }
+    runs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn planes_are_named_by_size_and_their_rows_are_cut_where_the_label_changes() {
+        let mut labels = vec![9, 9, 4, 4, 4, 0, 7, 4];
+        by_size(&mut labels);
+        assert_eq!(labels, [2, 2, 1, 1, 1, 0, 3, 1]);
+        let found: Vec<[u32; 4]> =
+            runs(&labels, 4).iter().map(|run| [run.v, run.u_first, run.u_last, run.label.into()]).collect();
+        assert_eq!(found, [[0, 0, 1, 2], [0, 2, 3, 1], [1, 0, 0, 1], [1, 2, 2, 3], [1, 3, 3, 1]]);
+    }
+
+    #[test]
+    fn a_described_plane_is_the_one_in_the_map() {
+        let width = 20;
+        let value = |at: usize| 1000.0 + 3.0 * (at % width) as f32 - 2.0 * (at / width) as f32;
+        let mut values: Vec<f32> = (0..width * 10).map(value).collect();
+        values[3] = f32::NAN;
+        let view = DepthView::new(&values, width, 10).unwrap();
+        let found = describe_labels(view, vec![5; 200], &Sensor::default()).unwrap();
+        let fit = found.planes[0].fit.unwrap();
+        assert_eq!((found.planes.len(), found.planes[0].pixel_count, found.labels[3]), (1, 199, 0));
+        assert!((fit.gradient[0] - 3.0).abs() < 1e-9 && (fit.gradient[1] + 2.0).abs() < 1e-9, "{fit:?}");
+        assert_eq!(
+            describe_labels(view, vec![5; 199], &Sensor::default()).unwrap_err(),
+            Error::Length { given: 199, least: 200, most: 200 }
+        );
+    }
+}
