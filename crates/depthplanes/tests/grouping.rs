@@ -2,9 +2,9 @@
 
 mod naive;
 
+use depthplanes::DepthView;
 use depthplanes::internals::Selection;
 use depthplanes::internals::{Compiles, Grouper, Kernel, LinkRule, kernels};
-use depthplanes::{DepthView, Pixel};
 use naive::Random;
 
 fn labels<T: Compiles>(

@@ -13,8 +13,10 @@ pub struct LinkRule<T> {
     pub(crate) theta: T,
     /// The valid range's length for integers, where one comparison of `value - low` serves for both
     /// ends; its high end for `f32`.
+    #[cfg_attr(not(target_arch = "x86_64"), expect(dead_code, reason = "only the kernels of x86-64 ask for it"))]
     pub(crate) high_or_span: T,
     /// Whether nothing was said of validity: 0, NaN and the infinities are missing, and that is all.
+    #[cfg_attr(not(target_arch = "x86_64"), expect(dead_code, reason = "only the kernels of x86-64 ask for it"))]
     pub(crate) is_default: bool,
 }
 
