@@ -8,7 +8,7 @@
 //! runs the frame has), `labels FILE` (writes the label image, raw u16).
 
 use depthplanes::DepthView;
-use depthplanes::internals::{Compiles, Grouper, Kernel, LinkRule, Selection, kernels};
+use depthplanes::internals::{Compiles, ConnectedComponents, Connectivity, Kernel, Selection, kernels};
 use std::hint::black_box;
 use std::io::BufRead;
 use std::time::{Duration, Instant};
@@ -49,8 +49,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 fn serve<T: Compiles>(job: &Job, pixels: Vec<T>) -> Result<(), Box<dyn std::error::Error>> {
     let view = DepthView::new(&pixels, job.width, job.height)?;
-    let rule = LinkRule::new(view.validity(), job.theta)?;
-    let mut grouper = Grouper::with_kernel(job.kernel);
+    let rule = Connectivity::new(view.validity(), job.theta)?;
+    let mut grouper = ConnectedComponents::with_kernel(job.kernel);
     grouper.leave_out_singles(job.min >= 1);
     let mut selection = Selection::default();
     let mut labels = Vec::new();

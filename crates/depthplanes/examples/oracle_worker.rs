@@ -25,7 +25,7 @@
 //! type, impossible size or thread count) or a request that breaks off, the worker ends with code 1.
 
 use depthplanes::DepthView;
-use depthplanes::internals::{Compiles, Grouper, Kernel, LinkRule, Selection, kernels};
+use depthplanes::internals::{Compiles, ConnectedComponents, Connectivity, Kernel, Selection, kernels};
 use depthplanes::limits::{MAX_PIXELS, MAX_SIDE};
 use std::error::Error;
 use std::io::{self, BufReader, BufWriter, Read, Write};
@@ -44,7 +44,7 @@ struct Request {
 
 /// A kernel with the memory that it keeps from map to map.
 struct Lane {
-    grouper: Grouper,
+    grouper: ConnectedComponents,
     selection: Selection,
 }
 
@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut output = BufWriter::new(io::stdout().lock());
     writeln!(output, "{}", kernels().map(Kernel::name).collect::<Vec<_>>().join(" "))?;
     output.flush()?;
-    let lane = |kernel| Lane { grouper: Grouper::with_kernel(kernel), selection: Selection::default() };
+    let lane = |kernel| Lane { grouper: ConnectedComponents::with_kernel(kernel), selection: Selection::default() };
     let mut lanes: Vec<Lane> = kernels().map(lane).collect();
     while let Some(request) = read_request(&mut input)? {
         let bytes = read_pixels(&mut input, &request)?;
@@ -116,7 +116,7 @@ fn numbers<T, const N: usize>(bytes: &[u8], read: fn([u8; N]) -> T) -> Vec<T> {
 /// The label image of every kernel and number of threads.
 fn label<T: Compiles>(lanes: &mut [Lane], request: &Request, pixels: &[T]) -> depthplanes::Result<Vec<Vec<u16>>> {
     let map = DepthView::new(pixels, request.width, request.height)?;
-    let rule = LinkRule::new(map.validity(), request.theta)?;
+    let rule = Connectivity::new(map.validity(), request.theta)?;
     let mut images = Vec::new();
     for Lane { grouper, selection } in lanes {
         for threads in 1..=request.threads {

@@ -8,7 +8,7 @@ use crate::map::AnyView;
 use crate::methods;
 use crate::methods::method::{Configured, Job, Parameters};
 use crate::sensor::Sensor;
-use crate::util::parallel::on_threads;
+use crate::util::parallel::install;
 
 /// Finds planes in frame after frame; after the first frame of a size it allocates nothing.
 ///
@@ -151,7 +151,7 @@ impl Detector {
         let joiner = self.joiner.as_mut();
         let mut job = Job { sensor: self.sensor, threads: self.threads, curved: self.curved, joiner, observer };
         let (map, method, detection) = (map.into(), &mut self.method, &mut self.detection);
-        on_threads(self.threads, || method.0.run(map, &mut job, detection))?;
+        install(self.threads, || method.0.run(map, &mut job, detection))?;
         Ok(&self.detection)
     }
 

@@ -8,7 +8,7 @@ use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::map::{AnyView, DepthView, Pixel, with_view};
 use crate::sensor::Sensor;
-use crate::statistics::{Describer, Seen};
+use crate::statistics::{PlaneStatistics, Seen};
 
 /// Describes the planes of a label image, row by row, 0 = none. They get new labels, 1, 2, .. by decreasing number of
 /// pixels; pixels of the map that are missing lose theirs.
@@ -40,7 +40,7 @@ fn described<T: Pixel>(map: &DepthView<'_, T>, mut labels: Vec<u16>, sensor: &Se
     by_size(&mut labels);
     let (width, height, valid_pixels) = (map.width(), map.height(), map.valid_pixels());
     let runs = runs(&labels, width);
-    let (mut describer, mut planes) = (Describer::default(), Vec::new());
+    let (mut describer, mut planes) = (PlaneStatistics::default(), Vec::new());
     describer.tally(map, &runs, 0, sensor, 1);
     let seen = Seen { sensor, noise: None, valid_pixels };
     describer.describe(map, &runs, &seen, 1, &mut planes);

@@ -76,10 +76,10 @@ pub use sensor::Sensor;
 #[doc(hidden)]
 pub mod internals {
     pub use crate::components::selection::{LabelledRun, Selection};
-    pub use crate::components::{Compiles, Grouper, Groups, Kernel, LinkRule, Run, best, kernels};
+    pub use crate::components::{Compiles, ConnectedComponents, Connectivity, Groups, Kernel, Run, best, kernels};
     pub use crate::methods::{Enhancer, Fillable};
     pub use crate::statistics::least_squares::{AffineFit, Moments, ValueSums, hessian, metric_covariance};
-    pub use crate::statistics::{Describer, Seen, Tally};
+    pub use crate::statistics::{PlaneStatistics, PlaneSums, Seen};
 }
 
 /// The README's example is a documentation test.

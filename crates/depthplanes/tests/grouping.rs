@@ -4,7 +4,7 @@ mod naive;
 
 use depthplanes::DepthView;
 use depthplanes::internals::Selection;
-use depthplanes::internals::{Compiles, Grouper, Kernel, LinkRule, kernels};
+use depthplanes::internals::{Compiles, ConnectedComponents, Connectivity, Kernel, kernels};
 use naive::Random;
 
 fn labels<T: Compiles>(
@@ -14,10 +14,10 @@ fn labels<T: Compiles>(
     kernel: &'static Kernel,
     threads: usize,
 ) -> Vec<u16> {
-    let mut grouper = Grouper::with_kernel(kernel);
+    let mut grouper = ConnectedComponents::with_kernel(kernel);
     grouper.leave_out_singles(min >= 1);
     let mut selection = Selection::default();
-    let rule = LinkRule::new(view.validity(), theta).unwrap();
+    let rule = Connectivity::new(view.validity(), theta).unwrap();
     let groups = grouper.group(view, &rule, threads);
     selection.select(groups, min).unwrap();
     let mut labels = Vec::new();
@@ -155,7 +155,7 @@ fn rows_that_fill_a_block_by_themselves_match_the_flood() {
 fn theta_must_be_a_number_of_at_least_0() {
     let view = DepthView::new(&[1u8], 1, 1).unwrap();
     for theta in [-1.0, f64::NAN, f64::NEG_INFINITY] {
-        let error = LinkRule::new(view.validity(), theta).unwrap_err();
+        let error = Connectivity::new(view.validity(), theta).unwrap_err();
         assert!(error.to_string().contains("theta"), "{error}");
     }
 }
@@ -164,8 +164,8 @@ fn theta_must_be_a_number_of_at_least_0() {
 fn more_planes_than_labels_is_an_error_that_names_the_remedy() {
     let map: Vec<u8> = (0..400 * 400).map(|at| 1 + ((at % 400 + at / 400) % 2 * 100) as u8).collect();
     let view = DepthView::new(&map, 400, 400).unwrap();
-    let mut grouper = Grouper::new();
-    let groups = grouper.group(&view, &LinkRule::new(view.validity(), 1.0).unwrap(), 1);
+    let mut grouper = ConnectedComponents::new();
+    let groups = grouper.group(&view, &Connectivity::new(view.validity(), 1.0).unwrap(), 1);
     let error = Selection::default().select(groups, 0).unwrap_err();
     assert!(error.to_string().contains("160000 planes") && error.to_string().contains("raise `min`"), "{error}");
 }

@@ -2,7 +2,7 @@
 
 mod naive;
 
-use depthplanes::internals::{Grouper, LinkRule, kernels};
+use depthplanes::internals::{ConnectedComponents, Connectivity, kernels};
 use depthplanes::limits::{MAX_PIXELS, MAX_SIDE};
 use depthplanes::{AnyView, DepthView, Detector, Error, Intrinsics, Measure, Ngaf, Pixel};
 use naive::Random;
@@ -116,8 +116,8 @@ fn nan_as_the_missing_value_changes_nothing_on_any_kernel() {
     assert_eq!(view.valid_pixels(), plain.valid_pixels());
     for kernel in kernels() {
         let sizes = |view: &DepthView<'_, f32>| {
-            let mut grouper = Grouper::with_kernel(kernel);
-            grouper.group(view, &LinkRule::new(view.validity(), 0.15).unwrap(), 1).sizes().to_vec()
+            let mut grouper = ConnectedComponents::with_kernel(kernel);
+            grouper.group(view, &Connectivity::new(view.validity(), 0.15).unwrap(), 1).sizes().to_vec()
         };
         assert_eq!(sizes(&view), sizes(&plain), "{kernel:?}");
     }

@@ -7,7 +7,7 @@ use super::affine::Affine;
 use crate::detection::Detection;
 use crate::error::Result;
 use crate::map::{AnyView, DepthView, with_view};
-use crate::methods::finish::{Finisher, MIN, Wanted};
+use crate::methods::extraction::{Extraction, MIN, Wanted};
 use crate::methods::method::{Job, Method, MethodInfo};
 use crate::methods::parameter::{Param, ParamKind};
 use crate::noise::{NoiseModel, Space, noise_of_map};
@@ -31,7 +31,7 @@ pub(super) trait Baseline: Send + Sized + 'static {
     const NAME: &'static str;
     /// One sentence: what it finds, and whose it is.
     const ABOUT: &'static str;
-    /// Its own stages, and then those of [`Finisher::finish`].
+    /// Its own stages, and then those of [`Extraction::extract`].
     const STAGES: &'static [&'static str];
     /// Its parameters, [`MIN`] among them.
     const PARAMS: &'static [Param];
@@ -56,7 +56,7 @@ pub(super) const fn row<B: Baseline>() -> MethodInfo {
             Box::new(Runner {
                 min: values.whole(MIN.name) as u32,
                 baseline: B::new(&values),
-                finisher: Finisher::default(),
+                extraction: Extraction::default(),
             })
         },
     }
@@ -108,7 +108,7 @@ struct Runner<B> {
     /// A plane has strictly more pixels than this.
     min: u32,
     baseline: B,
-    finisher: Finisher,
+    extraction: Extraction,
 }
 
 impl<B: Baseline> Method for Runner<B> {
@@ -123,6 +123,6 @@ impl<B: Baseline> Method for Runner<B> {
         let image = DepthView::new(&image, view.width(), view.height())?;
         let wanted =
             Wanted { min: self.min, min_area: 0.0, noise: noise.as_ref(), valid_pixels: input.affine.valid_pixels };
-        with_view!(view, map => self.finisher.finish(&map, &image, &wanted, job, out))
+        with_view!(view, map => self.extraction.extract(&map, &image, &wanted, job, out))
     }
 }

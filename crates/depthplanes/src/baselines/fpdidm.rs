@@ -8,7 +8,7 @@
 use super::a_contrario::{Abc, Background, DELTA, EPS, Region, paint};
 use super::affine::{Affine, Around};
 use super::baseline::{Baseline, Input, Segmented, Values};
-use crate::methods::finish::{MIN, STAGES};
+use crate::methods::extraction::{MIN, STAGES};
 use crate::methods::method::Job;
 use crate::methods::parameter::{Param, ParamKind};
 use crate::statistics::least_squares::Moments;

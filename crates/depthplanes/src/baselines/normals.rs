@@ -9,7 +9,7 @@
 use super::affine::Affine;
 use super::baseline::{Baseline, Input, Segmented, Values};
 use crate::limits::MAX_PLANES;
-use crate::methods::finish::{MIN, STAGES};
+use crate::methods::extraction::{MIN, STAGES};
 use crate::methods::method::Job;
 use crate::methods::parameter::{Param, ParamKind};
 use crate::methods::rays::{Plane3, Rays, Vec3, cross, dot, sub, unit};

@@ -9,7 +9,7 @@ use super::a_contrario::{Abc, Background, DELTA, EPS, Region, paint};
 use super::affine::Affine;
 use super::baseline::{Baseline, Input, SEED, Segmented, Values};
 use crate::limits::MAX_PLANES;
-use crate::methods::finish::{MIN, STAGES};
+use crate::methods::extraction::{MIN, STAGES};
 use crate::methods::method::Job;
 use crate::methods::parameter::{Param, ParamKind};
 use crate::util::random::Random;

@@ -4,12 +4,12 @@
 //! ones. Most pixels are neither, so they are found as bits, 64 to a word: column u of a row is bit u % 64 of its word
 //! u / 64. What follows looks at these pixels alone.
 
+use super::connectivity::Connectivity;
 use super::isa::RowMasks;
 use super::kernels::best;
-use super::link_rule::LinkRule;
 use crate::map::Validity;
 use crate::util::bits::{behind, bits};
-use crate::util::parallel::{Rows, in_parts};
+use crate::util::parallel::{Rows, map_reduce};
 use std::ops::Range;
 
 /// Pixels of a word.
@@ -37,9 +37,9 @@ impl Boundary {
         like_left.resize(count, 0);
         like_up.resize(count, 0);
         let labelled = &mut labelled[words..][..count];
-        let rule = LinkRule::new(Validity::default(), 0.0).expect("theta is 0");
-        let find = |part: Part<'_>| part.find(image, stride, &rule);
-        in_parts(threads, Part { first: 0, words, labelled, like_left, like_up }, find, |(), ()| ());
+        let rule = Connectivity::new(Validity::default(), 0.0).expect("theta is 0");
+        let find = |part: MaskRows<'_>| part.find(image, stride, &rule);
+        map_reduce(threads, MaskRows { first: 0, words, labelled, like_left, like_up }, find, |(), ()| ());
         self.words = words;
     }
 
@@ -80,7 +80,7 @@ impl Boundary {
 }
 
 /// The masks of some rows, to be written.
-struct Part<'a> {
+struct MaskRows<'a> {
     /// The image's row in the first.
     first: usize,
     words: usize,
@@ -89,24 +89,24 @@ struct Part<'a> {
     like_up: &'a mut [u64],
 }
 
-impl Rows for Part<'_> {
+impl Rows for MaskRows<'_> {
     fn rows(&self) -> usize {
         self.labelled.len() / self.words
     }
 
-    fn cut(self, rows: usize) -> (Self, Self) {
-        let Part { first, words, labelled, like_left, like_up } = self;
+    fn split_rows(self, rows: usize) -> (Self, Self) {
+        let MaskRows { first, words, labelled, like_left, like_up } = self;
         let [a, b, c] = [labelled, like_left, like_up].map(|masks| masks.split_at_mut(rows * words));
         (
-            Part { first, words, labelled: a.0, like_left: b.0, like_up: c.0 },
-            Part { first: first + rows, words, labelled: a.1, like_left: b.1, like_up: c.1 },
+            MaskRows { first, words, labelled: a.0, like_left: b.0, like_up: c.0 },
+            MaskRows { first: first + rows, words, labelled: a.1, like_left: b.1, like_up: c.1 },
         )
     }
 }
 
-impl Part<'_> {
-    fn find(self, image: &[u16], stride: usize, rule: &LinkRule<u16>) {
-        let Part { first, words, labelled, like_left, like_up } = self;
+impl MaskRows<'_> {
+    fn find(self, image: &[u16], stride: usize, rule: &Connectivity<u16>) {
+        let MaskRows { first, words, labelled, like_left, like_up } = self;
         let kernel = best();
         let row = |v: usize| &image[v * stride..][..stride];
         let likes = like_left.chunks_exact_mut(words).zip(like_up.chunks_exact_mut(words));

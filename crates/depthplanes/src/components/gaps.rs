@@ -5,10 +5,10 @@
 //! at random holds together by its four next pixels while 59 % are there, and by the twelve that are one or two steps
 //! off while 29 % are (the thresholds of site percolation on the square lattice).
 
-use super::grouper::{Grouper, Groups};
+use super::connected_components::{ConnectedComponents, Groups};
 use crate::util::bits::{ahead, behind, bits};
 use crate::util::memory::reserve_to;
-use crate::util::parallel::in_rows;
+use crate::util::parallel::for_row_blocks;
 use crate::util::simd::vectorised;
 use std::ops::Range;
 
@@ -31,14 +31,14 @@ pub(crate) struct Measured<'a> {
 /// Joins pieces over gaps; reuses its memory.
 #[derive(Debug, Default)]
 pub(crate) struct Bridge {
-    parts: Vec<Part>,
+    parts: Vec<RowPairs>,
     /// Groups that are one.
     pairs: Vec<[u32; 2]>,
 }
 
 /// What is found in some rows of the map.
 #[derive(Debug, Default)]
-struct Part {
+struct RowPairs {
     /// Groups that are one.
     pairs: Vec<[u32; 2]>,
 }
@@ -46,10 +46,10 @@ struct Part {
 impl Bridge {
     /// Joins the groups of a region image, on as many threads, over missing pixels only: what was measured between and lies
     /// on no plane parts them.
-    pub(crate) fn join(&mut self, map: Measured<'_>, image: &[u16], grouper: &mut Grouper, threads: usize) {
+    pub(crate) fn join(&mut self, map: Measured<'_>, image: &[u16], grouper: &mut ConnectedComponents, threads: usize) {
         let Bridge { parts, pairs } = self;
         let groups = grouper.groups();
-        in_rows(threads, map.height, ROWS, parts, |part, rows| {
+        for_row_blocks(threads, map.height, ROWS, parts, |part, rows| {
             vectorised(
                 #[inline(always)]
                 || part.list(rows, map, image, groups),
@@ -61,7 +61,7 @@ impl Bridge {
     }
 }
 
-impl Part {
+impl RowPairs {
     #[inline(always)]
     fn list(&mut self, rows: Range<usize>, map: Measured<'_>, image: &[u16], groups: &Groups) {
         // On a chequered image every second pixel is two steps from four others.

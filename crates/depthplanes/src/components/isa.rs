@@ -1,6 +1,6 @@
 //! What an instruction set brings to grouping: a handful of operations on rows.
 
-use super::link_rule::LinkRule;
+use super::connectivity::Connectivity;
 use crate::map::Pixel;
 
 /// Elements that an operation may write or read beyond the end of a buffer's used part.
@@ -10,11 +10,11 @@ pub(super) const SLACK: usize = 64;
 /// operations are only reached through a [`Kernel`] whose processor features were found.
 pub trait Isa {
     /// Masks of one row of 8-bit values.
-    fn masks_u8(row: &[u8], up: &[u8], rule: &LinkRule<u8>, out: RowMasks<'_>);
+    fn masks_u8(row: &[u8], up: &[u8], rule: &Connectivity<u8>, out: RowMasks<'_>);
     /// Masks of one row of 16-bit values.
-    fn masks_u16(row: &[u16], up: &[u16], rule: &LinkRule<u16>, out: RowMasks<'_>);
+    fn masks_u16(row: &[u16], up: &[u16], rule: &Connectivity<u16>, out: RowMasks<'_>);
     /// Masks of one row of floating-point values.
-    fn masks_f32(row: &[f32], up: &[f32], rule: &LinkRule<f32>, out: RowMasks<'_>);
+    fn masks_f32(row: &[f32], up: &[f32], rule: &Connectivity<f32>, out: RowMasks<'_>);
 
     /// Adds two numbers of many words, the lowest first. What the last word carries out is lost.
     #[inline(always)]
@@ -81,14 +81,14 @@ pub struct Links<'a> {
 /// Pixel types that instruction sets compare.
 pub trait Masked: Pixel {
     /// The instruction set's masks for this type.
-    fn masks<I: Isa>(row: &[Self], up: &[Self], rule: &LinkRule<Self>, out: RowMasks<'_>);
+    fn masks<I: Isa>(row: &[Self], up: &[Self], rule: &Connectivity<Self>, out: RowMasks<'_>);
 }
 
 macro_rules! masked {
     ($t:ty, $masks:ident) => {
         impl Masked for $t {
             #[inline(always)]
-            fn masks<I: Isa>(row: &[Self], up: &[Self], rule: &LinkRule<Self>, out: RowMasks<'_>) {
+            fn masks<I: Isa>(row: &[Self], up: &[Self], rule: &Connectivity<Self>, out: RowMasks<'_>) {
                 I::$masks(row, up, rule, out)
             }
         }

@@ -2,7 +2,7 @@
 //! neighbours whose values differ by at most theta.
 //!
 //! In: a map and theta. Out: [`Groups`], every valid pixel in exactly one group (but for lone pixels
-//! where [`Grouper::leave_out_singles`] allows to skip them). Why runs of linked
+//! where [`ConnectedComponents::leave_out_singles`] allows to skip them). Why runs of linked
 //! pixels instead of pixels: links of a row fit 64 to a machine word, so a row costs a few vector
 //! instructions and only the places where a run first touches a run above cost a step each. The
 //! answer is the same for every kernel and any number of threads, since components do not depend on
@@ -12,17 +12,17 @@
 //! strips, `union_find::flatten` numbers the groups and adds up their sizes.
 
 pub(crate) mod boundary;
+mod connected_components;
+mod connectivity;
 pub(crate) mod gaps;
-mod grouper;
 mod isa;
 mod kernels;
 mod labels;
-mod link_rule;
 mod scan;
 mod scratch;
 pub(crate) mod selection;
 mod strip;
 
-pub use grouper::{Grouper, Groups, Run};
+pub use connected_components::{ConnectedComponents, Groups, Run};
+pub use connectivity::Connectivity;
 pub use kernels::{Compiles, Kernel, best, kernels};
-pub use link_rule::LinkRule;

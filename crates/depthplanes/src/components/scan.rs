@@ -1,10 +1,10 @@
 //! From rows of a map to labelled runs: the masks of their links, block by block, the runs in these, and their labels;
 //! and how the labels of neighbouring strips become one.
 
+use super::connectivity::Connectivity;
 use super::isa::SLACK;
 use super::isa::{Isa, Masked, RowMasks};
 use super::labels::label_block;
-use super::link_rule::LinkRule;
 use super::scratch::Scratch;
 use super::strip::Strip;
 use crate::map::DepthView;
@@ -14,7 +14,7 @@ use std::ops::Range;
 
 /// Labels a strip, block by block of rows: their links, their runs, their contacts, and a label for each.
 #[inline(always)]
-pub(super) fn scan<I: Isa, T: Masked>(map: &DepthView<'_, T>, rule: &LinkRule<T>, strip: &mut Strip) {
+pub(super) fn scan<I: Isa, T: Masked>(map: &DepthView<'_, T>, rule: &Connectivity<T>, strip: &mut Strip) {
     (strip.valid_pixels, strip.singles_left_out, strip.run_count) = (0, 0, 0);
     let (height, block_rows) = (strip.rows.len(), strip.block_rows());
     for first in (0..height).step_by(block_rows) {
@@ -29,7 +29,12 @@ pub(super) fn scan<I: Isa, T: Masked>(map: &DepthView<'_, T>, rule: &LinkRule<T>
 /// Links of a block's rows, and of the row below, which tells pixels without any. Those of the block's
 /// first row are known from the block above.
 #[inline(always)]
-fn find_links<I: Isa, T: Masked>(map: &DepthView<'_, T>, rule: &LinkRule<T>, strip: &mut Strip, block: &Range<usize>) {
+fn find_links<I: Isa, T: Masked>(
+    map: &DepthView<'_, T>,
+    rule: &Connectivity<T>,
+    strip: &mut Strip,
+    block: &Range<usize>,
+) {
     let (words, block_rows) = (strip.words, strip.block_rows());
     let Scratch { left, up, .. } = &mut strip.scratch;
     let known = block.start + usize::from(block.start > 0);
@@ -115,7 +120,7 @@ fn leave_out_singles(strip: &mut Strip, block: &Range<usize>) {
 #[inline(always)]
 pub(super) fn stitch<I: Isa, T: Masked>(
     map: &DepthView<'_, T>,
-    rule: &LinkRule<T>,
+    rule: &Connectivity<T>,
     upper: &Strip,
     lower: &mut Strip,
     forest: &mut [u32],

@@ -2,7 +2,7 @@
 //!
 //! A row of [`METHODS`] gives a method its flag, its keyword, its help and its contract tests.
 
-pub(crate) mod finish;
+pub(crate) mod extraction;
 pub(crate) mod method;
 mod ngaf;
 pub(crate) mod noise;

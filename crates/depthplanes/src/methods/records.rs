@@ -8,7 +8,7 @@ use crate::components::selection::Selection;
 use crate::coplanar::Joiner;
 use crate::detection::{Detection, Plane};
 use crate::map::{DepthView, Pixel};
-use crate::statistics::{Describer, Seen};
+use crate::statistics::{PlaneStatistics, Seen};
 
 /// The planes of a map and all that their records are made of.
 pub(crate) struct Records<'a, T> {
@@ -18,7 +18,7 @@ pub(crate) struct Records<'a, T> {
     pub(crate) seen: Seen<'a>,
     pub(crate) threads: usize,
     pub(crate) selection: &'a mut Selection,
-    pub(crate) describer: &'a mut Describer,
+    pub(crate) describer: &'a mut PlaneStatistics,
 }
 
 impl<T: Pixel> Records<'_, T> {

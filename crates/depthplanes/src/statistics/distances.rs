@@ -1,7 +1,7 @@
 //! The second pass over a plane's pixels: their distances from it, and what of it is seen.
 
 use super::least_squares::{AffineFit, LANES, Lanes, hessian, in_lanes, metric_covariance};
-use super::tally::Tally;
+use super::plane_sums::PlaneSums;
 use crate::camera::Intrinsics;
 use crate::components::selection::LabelledRun;
 use crate::detection::{CovarianceSource, MetricPlane};
@@ -121,7 +121,7 @@ impl Distances {
 
     /// The metric plane: a point's distance from it is z |q - q of the plane| times the plane's
     /// distance from the camera, since n . P + d = d (1 - z m . r).
-    pub(super) fn metric(&self, tally: &Tally, seen: &Seen<'_>) -> Option<MetricPlane> {
+    pub(super) fn metric(&self, tally: &PlaneSums, seen: &Seen<'_>) -> Option<MetricPlane> {
         let camera = &seen.sensor.intrinsics?;
         let fit = tally.inverse_depth.filter(|_| !self.behind_infinity)?;
         let plane = hessian(&fit, camera)?;

@@ -1,13 +1,13 @@
 //! Running sums, least squares, and from labelled pixels to plane records.
 
 mod covariance;
-mod describer;
 mod distances;
 pub mod least_squares;
 mod parts;
+mod plane_statistics;
+mod plane_sums;
 pub(crate) mod quadratic;
-mod tally;
 
-pub use describer::Describer;
 pub use distances::Seen;
-pub use tally::Tally;
+pub use plane_statistics::PlaneStatistics;
+pub use plane_sums::PlaneSums;

@@ -10,7 +10,7 @@ pub(crate) trait Rows: Sized + Send {
     /// How many.
     fn rows(&self) -> usize;
     /// The first `rows`, and the others.
-    fn cut(self, rows: usize) -> (Self, Self);
+    fn split_rows(self, rows: usize) -> (Self, Self);
 }
 
 /// Parts for each thread, so that one that has little to do can take from the others.
@@ -18,7 +18,7 @@ const PARTS: usize = 4;
 
 /// Does the work on about `threads` times [`PARTS`] parts of a whole, or on the whole if there is one thread (or no
 /// feature `parallel`); `unite` puts neighbouring answers together.
-pub(crate) fn in_parts<W: Rows, A: Send>(
+pub(crate) fn map_reduce<W: Rows, A: Send>(
     threads: usize,
     whole: W,
     work: impl Fn(W) -> A + Sync,
@@ -28,14 +28,14 @@ pub(crate) fn in_parts<W: Rows, A: Send>(
     split(parts, whole, &work, &unite)
 }
 
-/// Does the work where several threads share what it hands to [`in_parts`], if there is more than one: threads that go to
+/// Does the work where several threads share what it hands to [`map_reduce`], if there is more than one: threads that go to
 /// sleep between its stages take longer to wake than some stages take.
-pub(crate) fn on_threads<A: Send>(threads: usize, work: impl FnOnce() -> A + Send) -> A {
-    side_by_side(threads, work, || ()).0
+pub(crate) fn install<A: Send>(threads: usize, work: impl FnOnce() -> A + Send) -> A {
+    join(threads, work, || ()).0
 }
 
 /// Does two things, side by side if there is more than one thread.
-pub(crate) fn side_by_side<A: Send, B: Send>(
+pub(crate) fn join<A: Send, B: Send>(
     threads: usize,
     a: impl FnOnce() -> A + Send,
     b: impl FnOnce() -> B + Send,
@@ -54,7 +54,7 @@ fn split<W: Rows, A: Send>(
     }
     let half = parts / 2;
     let rows = (whole.rows() * half / parts).max(1);
-    let (first, second) = whole.cut(rows);
+    let (first, second) = whole.split_rows(rows);
     let (a, b) = both(|| split(half, first, work, unite), || split(parts - half, second, work, unite));
     unite(a, b)
 }
@@ -75,7 +75,7 @@ impl<T: Send> Rows for &mut [T] {
         self.len()
     }
 
-    fn cut(self, rows: usize) -> (Self, Self) {
+    fn split_rows(self, rows: usize) -> (Self, Self) {
         self.split_at_mut(rows)
     }
 }
@@ -91,7 +91,7 @@ impl<T: Send> Rows for Numbered<'_, T> {
         self.all.len()
     }
 
-    fn cut(self, rows: usize) -> (Self, Self) {
+    fn split_rows(self, rows: usize) -> (Self, Self) {
         let Numbered { first, all } = self;
         let (above, below) = all.split_at_mut(rows);
         (Numbered { first, all: above }, Numbered { first: first + rows, all: below })
@@ -118,7 +118,7 @@ impl<T: Send> Rows for NumberedRows<'_, T> {
         self.all.len() / self.per_row
     }
 
-    fn cut(self, rows: usize) -> (Self, Self) {
+    fn split_rows(self, rows: usize) -> (Self, Self) {
         let NumberedRows { first, per_row, all } = self;
         let (above, below) = all.split_at_mut(rows * per_row);
         (NumberedRows { first, per_row, all: above }, NumberedRows { first: first + rows, per_row, all: below })
@@ -126,7 +126,7 @@ impl<T: Send> Rows for NumberedRows<'_, T> {
 }
 
 /// Does the work on `per_part` rows at a time, on as many threads; each of these parts has memory of its own.
-pub(crate) fn in_rows<P: Default + Send>(
+pub(crate) fn for_row_blocks<P: Default + Send>(
     threads: usize,
     rows: usize,
     per_part: usize,
@@ -139,12 +139,12 @@ pub(crate) fn in_rows<P: Default + Send>(
             work(part, number * per_part..((number + 1) * per_part).min(rows));
         }
     };
-    in_parts(threads, Numbered { first: 0, all: parts }, work_on, |(), ()| ());
+    map_reduce(threads, Numbered { first: 0, all: parts }, work_on, |(), ()| ());
 }
 
 #[cfg(test)]
 mod tests {
-    use super::in_parts;
+    use super::map_reduce;
 
     #[test]
     fn every_row_is_worked_on_once_and_in_order() {
@@ -155,7 +155,7 @@ mod tests {
                     part.iter_mut().for_each(|row| *row += 1);
                     part.to_vec()
                 };
-                let seen = in_parts(threads, &mut all[..], work, |mut a, b| {
+                let seen = map_reduce(threads, &mut all[..], work, |mut a, b| {
                     a.extend(b);
                     a
                 });

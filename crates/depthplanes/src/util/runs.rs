@@ -6,7 +6,7 @@ use std::ops::Range;
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// Numbers that are compared together.
-const ABREAST: usize = 16;
+const LANES: usize = 16;
 
 /// Calls `visit` for each run of a row's places that have one number, but not for [`NONE`]: the number, the columns.
 #[inline(always)]
@@ -19,8 +19,8 @@ pub(crate) fn each_run(row: &[u32], first: usize, mut visit: impl FnMut(u32, Ran
         start = end;
     };
     let Some(last) = row.len().checked_sub(1) else { return };
-    let (own, next) = (row[..last].as_chunks::<ABREAST>(), row[1..].as_chunks::<ABREAST>());
-    for (at, (own, next)) in (1..).step_by(ABREAST).zip(own.0.iter().zip(next.0)) {
+    let (own, next) = (row[..last].as_chunks::<LANES>(), row[1..].as_chunks::<LANES>());
+    for (at, (own, next)) in (1..).step_by(LANES).zip(own.0.iter().zip(next.0)) {
         let mut rest = u128::from_le_bytes(std::array::from_fn(|i| u8::from(own[i] != next[i])));
         while rest != 0 {
             end_at(at + rest.trailing_zeros() as usize / 8);

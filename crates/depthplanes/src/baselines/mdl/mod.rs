@@ -13,7 +13,7 @@ mod merge;
 
 use super::baseline::{Baseline, Input, SEED, Segmented, Values};
 use crate::map::with_view;
-use crate::methods::finish::{MIN, STAGES};
+use crate::methods::extraction::{MIN, STAGES};
 use crate::methods::method::Job;
 use crate::methods::noise::{NOISE, NOISE_GROWTH, of_kind, stated};
 use crate::methods::parameter::{Param, ParamKind};

@@ -14,7 +14,7 @@ use super::baseline::{Baseline, Input, SEED, Segmented, Values};
 use super::cloud::Cloud;
 use super::pieces::{EPSILON, Pieces, Tolerance};
 use crate::limits::MAX_PLANES;
-use crate::methods::finish::{MIN, STAGES};
+use crate::methods::extraction::{MIN, STAGES};
 use crate::methods::method::Job;
 use crate::methods::parameter::{Param, ParamKind};
 use crate::util::random::Random;

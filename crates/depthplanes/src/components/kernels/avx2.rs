@@ -3,8 +3,8 @@
 use super::kernel::kernel;
 use super::portable::Portable;
 use super::words::words;
+use crate::components::connectivity::Connectivity;
 use crate::components::isa::{Isa, RowMasks};
-use crate::components::link_rule::LinkRule;
 use crate::util::simd::has_avx2;
 use std::arch::x86_64::*;
 
@@ -18,7 +18,7 @@ macro_rules! masks {
     ($name:ident, $t:ty, $load:path, $set:path, $bits:path,
      |$a:ident, $b:ident, $sentinel:ident, $low:ident, $high:ident, $theta:ident| $valid:expr, $close:expr) => {
         #[target_feature(enable = "avx2,bmi1,bmi2")]
-        fn $name(row: &[$t], up: &[$t], rule: &LinkRule<$t>, out: RowMasks<'_>) {
+        fn $name(row: &[$t], up: &[$t], rule: &Connectivity<$t>, out: RowMasks<'_>) {
             let v = &rule.validity;
             let [$sentinel, $low, $high, $theta] =
                 [v.sentinel, v.low, rule.high_or_span, rule.theta].map(|x| $set(x as _));
@@ -119,17 +119,17 @@ masks!(
 
 impl Isa for Avx2 {
     #[inline(always)]
-    fn masks_u8(row: &[u8], up: &[u8], rule: &LinkRule<u8>, out: RowMasks<'_>) {
+    fn masks_u8(row: &[u8], up: &[u8], rule: &Connectivity<u8>, out: RowMasks<'_>) {
         // SAFETY: reached only through the kernel of this file, whose features include those of the callee.
         unsafe { masks_u8(row, up, rule, out) }
     }
     #[inline(always)]
-    fn masks_u16(row: &[u16], up: &[u16], rule: &LinkRule<u16>, out: RowMasks<'_>) {
+    fn masks_u16(row: &[u16], up: &[u16], rule: &Connectivity<u16>, out: RowMasks<'_>) {
         // SAFETY: as above.
         unsafe { masks_u16(row, up, rule, out) }
     }
     #[inline(always)]
-    fn masks_f32(row: &[f32], up: &[f32], rule: &LinkRule<f32>, out: RowMasks<'_>) {
+    fn masks_f32(row: &[f32], up: &[f32], rule: &Connectivity<f32>, out: RowMasks<'_>) {
         // SAFETY: as above.
         unsafe { masks_f32(row, up, rule, out) }
     }

@@ -2,8 +2,8 @@
 
 use super::kernel::kernel;
 use super::words::words;
+use crate::components::connectivity::Connectivity;
 use crate::components::isa::{Isa, Links, RowMasks, SLACK};
-use crate::components::link_rule::LinkRule;
 use crate::util::simd::has_avx512;
 use std::arch::x86_64::*;
 
@@ -22,7 +22,7 @@ macro_rules! masks {
     ($name:ident, $t:ty, $lanes:literal, $load:path, $set:path,
      |$a:ident, $b:ident, $sentinel:ident, $low:ident, $high:ident, $theta:ident| $valid:expr, $by_default:expr, $close:expr) => {
         #[target_feature(enable = "avx512f,avx512bw,avx512vl,bmi1,bmi2")]
-        fn $name(row: &[$t], up: &[$t], rule: &LinkRule<$t>, out: RowMasks<'_>) {
+        fn $name(row: &[$t], up: &[$t], rule: &Connectivity<$t>, out: RowMasks<'_>) {
             let v = &rule.validity;
             let [$sentinel, $low, $high, $theta] =
                 [v.sentinel, v.low, rule.high_or_span, rule.theta].map(|x| $set(x as _));
@@ -108,17 +108,17 @@ masks!(
 
 impl Isa for Avx512 {
     #[inline(always)]
-    fn masks_u8(row: &[u8], up: &[u8], rule: &LinkRule<u8>, out: RowMasks<'_>) {
+    fn masks_u8(row: &[u8], up: &[u8], rule: &Connectivity<u8>, out: RowMasks<'_>) {
         // SAFETY: reached only through the kernel of this file, whose features include those of the callee.
         unsafe { masks_u8(row, up, rule, out) }
     }
     #[inline(always)]
-    fn masks_u16(row: &[u16], up: &[u16], rule: &LinkRule<u16>, out: RowMasks<'_>) {
+    fn masks_u16(row: &[u16], up: &[u16], rule: &Connectivity<u16>, out: RowMasks<'_>) {
         // SAFETY: as above.
         unsafe { masks_u16(row, up, rule, out) }
     }
     #[inline(always)]
-    fn masks_f32(row: &[f32], up: &[f32], rule: &LinkRule<f32>, out: RowMasks<'_>) {
+    fn masks_f32(row: &[f32], up: &[f32], rule: &Connectivity<f32>, out: RowMasks<'_>) {
         // SAFETY: as above.
         unsafe { masks_f32(row, up, rule, out) }
     }

@@ -1,14 +1,14 @@
 //! Grouping compiled for one instruction set: the algorithm of `scan.rs` and `labels.rs` with the operations of an
 //! [`Isa`].
 
+use crate::components::connectivity::Connectivity;
 use crate::components::isa::{Isa, Masked, RowMasks, SLACK};
-use crate::components::link_rule::LinkRule;
 use crate::components::strip::Strip;
 use crate::map::DepthView;
 use std::fmt;
 
-type Scan<T> = unsafe fn(&DepthView<'_, T>, &LinkRule<T>, &mut Strip);
-type Stitch<T> = unsafe fn(&DepthView<'_, T>, &LinkRule<T>, &Strip, &mut Strip, &mut [u32]);
+type Scan<T> = unsafe fn(&DepthView<'_, T>, &Connectivity<T>, &mut Strip);
+type Stitch<T> = unsafe fn(&DepthView<'_, T>, &Connectivity<T>, &Strip, &mut Strip, &mut [u32]);
 
 /// The algorithm compiled for one instruction set and pixel type.
 #[derive(Clone, Copy)]
@@ -24,7 +24,7 @@ pub struct Kernel {
     pub(super) u8: Compiled<u8>,
     pub(super) u16: Compiled<u16>,
     pub(super) f32: Compiled<f32>,
-    pub(super) masks: unsafe fn(&[u16], &[u16], &LinkRule<u16>, RowMasks<'_>),
+    pub(super) masks: unsafe fn(&[u16], &[u16], &Connectivity<u16>, RowMasks<'_>),
     pub(super) paint: unsafe fn(&Strip, &[u16], &mut [u16]),
 }
 
@@ -35,19 +35,19 @@ macro_rules! kernel {
         pub(in crate::components) const KERNEL: $crate::components::kernels::kernel::Kernel = {
             use crate::components::isa::{Isa, Masked, RowMasks};
             use crate::components::kernels::kernel::{Compiled, Kernel, paint_strip};
-            use crate::components::link_rule::LinkRule;
+            use crate::components::connectivity::Connectivity;
             use crate::components::scan;
             use crate::components::strip::Strip;
             use crate::map::DepthView;
 
             $(#[$attribute])?
-            fn scan<T: Masked>(map: &DepthView<'_, T>, rule: &LinkRule<T>, rows: &mut Strip) {
+            fn scan<T: Masked>(map: &DepthView<'_, T>, rule: &Connectivity<T>, rows: &mut Strip) {
                 scan::scan::<$isa, T>(map, rule, rows);
             }
             $(#[$attribute])?
             fn stitch<T: Masked>(
                 map: &DepthView<'_, T>,
-                rule: &LinkRule<T>,
+                rule: &Connectivity<T>,
                 upper: &Strip,
                 lower: &mut Strip,
                 parent: &mut [u32],
@@ -55,7 +55,7 @@ macro_rules! kernel {
                 scan::stitch::<$isa, T>(map, rule, upper, lower, parent);
             }
             $(#[$attribute])?
-            fn masks(row: &[u16], up: &[u16], rule: &LinkRule<u16>, out: RowMasks<'_>) {
+            fn masks(row: &[u16], up: &[u16], rule: &Connectivity<u16>, out: RowMasks<'_>) {
                 <$isa as Isa>::masks_u16(row, up, rule, out);
             }
             $(#[$attribute])?
@@ -104,7 +104,7 @@ impl Kernel {
     pub(in crate::components) fn scan<T: Compiles>(
         &self,
         map: &DepthView<'_, T>,
-        rule: &LinkRule<T>,
+        rule: &Connectivity<T>,
         strip: &mut Strip,
     ) {
         // SAFETY: a kernel is only handed out by [`super::kernels`], after `runs_here` found its features.
@@ -114,7 +114,7 @@ impl Kernel {
     pub(in crate::components) fn stitch<T: Compiles>(
         &self,
         map: &DepthView<'_, T>,
-        rule: &LinkRule<T>,
+        rule: &Connectivity<T>,
         upper: &Strip,
         lower: &mut Strip,
         parent: &mut [u32],
@@ -124,7 +124,7 @@ impl Kernel {
     }
 
     /// Masks of a row of numbers, and of how they are like those above.
-    pub(crate) fn masks(&self, row: &[u16], up: &[u16], rule: &LinkRule<u16>, out: RowMasks<'_>) {
+    pub(crate) fn masks(&self, row: &[u16], up: &[u16], rule: &Connectivity<u16>, out: RowMasks<'_>) {
         // SAFETY: as in `scan`.
         unsafe { (self.masks)(row, up, rule, out) }
     }

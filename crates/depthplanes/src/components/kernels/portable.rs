@@ -1,8 +1,8 @@
 //! The operations in plain Rust, in a shape that compilers vectorise.
 
 use super::kernel::kernel;
+use crate::components::connectivity::Connectivity;
 use crate::components::isa::{Isa, RowMasks};
-use crate::components::link_rule::LinkRule;
 use crate::map::Pixel;
 
 pub(super) struct Portable;
@@ -10,13 +10,13 @@ pub(super) struct Portable;
 kernel!("portable", Portable, || true);
 
 impl Isa for Portable {
-    fn masks_u8(row: &[u8], up: &[u8], rule: &LinkRule<u8>, out: RowMasks<'_>) {
+    fn masks_u8(row: &[u8], up: &[u8], rule: &Connectivity<u8>, out: RowMasks<'_>) {
         masks(row, up, rule, out);
     }
-    fn masks_u16(row: &[u16], up: &[u16], rule: &LinkRule<u16>, out: RowMasks<'_>) {
+    fn masks_u16(row: &[u16], up: &[u16], rule: &Connectivity<u16>, out: RowMasks<'_>) {
         masks(row, up, rule, out);
     }
-    fn masks_f32(row: &[f32], up: &[f32], rule: &LinkRule<f32>, out: RowMasks<'_>) {
+    fn masks_f32(row: &[f32], up: &[f32], rule: &Connectivity<f32>, out: RowMasks<'_>) {
         masks(row, up, rule, out);
     }
 
@@ -55,7 +55,7 @@ const MANY: u32 = 16;
 
 /// Masks of a row: flags in bytes, which vectorises, then eight bytes to eight bits.
 #[inline(always)]
-fn masks<T: Pixel>(row: &[T], up: &[T], rule: &LinkRule<T>, out: RowMasks<'_>) {
+fn masks<T: Pixel>(row: &[T], up: &[T], rule: &Connectivity<T>, out: RowMasks<'_>) {
     let mut flags = [0u8; 64];
     for (w, block) in row.chunks(64).enumerate() {
         let first = w * 64;

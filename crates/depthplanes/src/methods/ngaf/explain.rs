@@ -4,9 +4,9 @@
 //! ours. Out: an [`Explanation`].
 
 use super::parameters::Ngaf;
-use super::pipeline::{Runner, Watch};
+use super::pipeline::{Observer, Runner};
 use crate::components::selection::Selection;
-use crate::components::{Groups, LinkRule};
+use crate::components::{Connectivity, Groups};
 use crate::detection::Detection;
 use crate::error::Result;
 use crate::explanation::{Explanation, Finding, Limit, Verdict};
@@ -14,7 +14,7 @@ use crate::map::with_view;
 use crate::map::{AnyView, DepthView, Pixel};
 use crate::methods::method::{Job, MethodInfo};
 use crate::methods::tries::{Change, Tries, rounded_up, smaller_min};
-use crate::statistics::Tally;
+use crate::statistics::PlaneSums;
 
 pub(super) fn explain(
     runner: &mut Runner,
@@ -24,21 +24,21 @@ pub(super) fn explain(
     at: [usize; 2],
 ) -> Result<Explanation> {
     let (mut out, params) = (Detection::default(), runner.params);
-    let mut seen =
-        Seen { at, params, before: None, findings: Vec::new(), nearest: None, pixels: 0, place: None, dropped: None };
+    let mut trace =
+        Trace { at, params, before: None, findings: Vec::new(), nearest: None, pixels: 0, place: None, dropped: None };
     with_view!(map, map => {
-        seen.look_at_pixel(&map);
-        runner.ngaf(map, job, &mut out, &mut seen)
+        trace.look_at_pixel(&map);
+        runner.ngaf(map, job, &mut out, &mut trace)
     })?;
-    let verdict = seen.verdict(&out);
+    let verdict = trace.verdict(&out);
     let values = params.values();
     let tries = Tries { info, values: &values, map, sensor: job.sensor, at, planes: out.planes.len() };
-    let suggestions = seen.changes(&verdict).into_iter().filter_map(|changes| tries.first(changes)).collect();
-    Ok(Explanation { at, method: info.name, findings: seen.findings, verdict, suggestions })
+    let suggestions = trace.changes(&verdict).into_iter().filter_map(|changes| tries.first(changes)).collect();
+    Ok(Explanation { at, method: info.name, findings: trace.findings, verdict, suggestions })
 }
 
 /// What was seen of one pixel.
-struct Seen {
+struct Trace {
     at: [usize; 2],
     params: Ngaf,
     /// The map's value, if valid.
@@ -54,7 +54,7 @@ struct Seen {
     dropped: Option<Verdict>,
 }
 
-impl Watch for Seen {
+impl Observer for Trace {
     fn selected<T: Pixel>(&mut self, map: &DepthView<'_, T>, groups: &Groups, selection: &Selection) {
         let [u, v] = self.at;
         let value = valid(map, u, v);
@@ -75,7 +75,7 @@ impl Watch for Seen {
         self.look_at_group(groups, selection);
     }
 
-    fn described(&mut self, tallies: &[Tally]) {
+    fn described(&mut self, tallies: &[PlaneSums]) {
         if let Some(place) = self.place {
             self.look_at_conditions(&tallies[place]);
         }
@@ -87,7 +87,7 @@ fn valid<T: Pixel>(map: &DepthView<'_, T>, u: usize, v: usize) -> Option<T> {
     map.validity().holds(value).then_some(value)
 }
 
-impl Seen {
+impl Trace {
     fn look_at_pixel<T: Pixel>(&mut self, map: &DepthView<'_, T>) {
         let [u, v] = self.at;
         self.before = valid(map, u, v).map(Into::into);
@@ -113,7 +113,8 @@ impl Seen {
             };
             let difference = (value.into() - other.into()).abs();
             // As the method itself decides, which takes theta as the map's own type.
-            let is_linked = LinkRule::new(map.validity(), self.params.theta).is_ok_and(|rule| rule.close(value, other));
+            let is_linked =
+                Connectivity::new(map.validity(), self.params.theta).is_ok_and(|rule| rule.close(value, other));
             if !is_linked && self.nearest.is_none_or(|nearest| difference < nearest) {
                 self.nearest = Some(difference);
             }
@@ -141,7 +142,7 @@ impl Seen {
         self.place = selection.kept().iter().position(|kept| Some(kept.group) == own);
     }
 
-    fn look_at_conditions(&mut self, tally: &Tally) {
+    fn look_at_conditions(&mut self, tally: &PlaneSums) {
         let Ngaf { max_rms, min_fill, margin, min, .. } = self.params;
         let rms = tally.fit.map_or(f64::INFINITY, |fit| fit.rms);
         let fill = tally.pixel_count as f64 / tally.bounding_box.area() as f64;

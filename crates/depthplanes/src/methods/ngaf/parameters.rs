@@ -3,7 +3,7 @@
 use super::enhance::WINDOW;
 use crate::limits::MAX_SIDE;
 use crate::methods::parameter::{Param, ParamKind, defaults, setters};
-use crate::statistics::Tally;
+use crate::statistics::PlaneSums;
 
 pub(super) const PARAMS: &[Param] = &[
     Param {
@@ -124,7 +124,7 @@ impl Ngaf {
     }
 
     /// Our own conditions on a plane of a map of that size.
-    pub(super) fn accepts(&self, plane: &Tally) -> bool {
+    pub(super) fn accepts(&self, plane: &PlaneSums) -> bool {
         let flat = self.max_rms == 0.0 || plane.fit.is_some_and(|fit| fit.rms <= self.max_rms);
         let filled = plane.pixel_count as f64 >= self.min_fill * plane.bounding_box.area() as f64;
         flat && filled && plane.inner_pixels > self.min as usize

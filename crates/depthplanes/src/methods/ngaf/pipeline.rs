@@ -3,23 +3,23 @@
 use super::enhance::{Enhancer, Fillable};
 use super::parameters::Ngaf;
 use crate::components::selection::Selection;
-use crate::components::{Compiles, Grouper, Groups, LinkRule};
+use crate::components::{Compiles, ConnectedComponents, Connectivity, Groups};
 use crate::detection::Detection;
 use crate::error::Result;
 use crate::map::{DepthView, Pixel};
 use crate::methods::method::Job;
 use crate::methods::records::Records;
 use crate::noise::NoiseModel;
-use crate::statistics::{Describer, Seen, Tally};
+use crate::statistics::{PlaneStatistics, PlaneSums, Seen};
 
 /// The method with its memory.
 #[derive(Default)]
 pub(super) struct Runner {
     pub(super) params: Ngaf,
     enhancer: Enhancer,
-    grouper: Grouper,
+    grouper: ConnectedComponents,
     selection: Selection,
-    describer: Describer,
+    describer: PlaneStatistics,
 }
 
 impl Runner {
@@ -32,19 +32,19 @@ impl Runner {
 }
 
 /// Told of a run as it goes on.
-pub(super) trait Watch {
+pub(super) trait Observer {
     /// Large groups are selected from the map as it was grouped.
     fn selected<T: Pixel>(&mut self, map: &DepthView<'_, T>, groups: &Groups, selection: &Selection);
 
     /// They are described; our own conditions have dropped none yet.
-    fn described(&mut self, tallies: &[Tally]);
+    fn described(&mut self, tallies: &[PlaneSums]);
 }
 
 /// Nobody looks.
-impl Watch for () {
+impl Observer for () {
     fn selected<T: Pixel>(&mut self, _: &DepthView<'_, T>, _: &Groups, _: &Selection) {}
 
-    fn described(&mut self, _: &[Tally]) {}
+    fn described(&mut self, _: &[PlaneSums]) {}
 }
 
 impl Runner {
@@ -54,7 +54,7 @@ impl Runner {
         map: DepthView<'_, T>,
         job: &mut Job<'_>,
         out: &mut Detection,
-        watch: &mut impl Watch,
+        observer: &mut impl Observer,
     ) -> Result<()> {
         let Runner { params, enhancer, grouper, selection, describer } = self;
         let (map, filled_pixels) = match params.window {
@@ -62,15 +62,15 @@ impl Runner {
             window => enhancer.enhance(&map, window, params.passes)?, // section 3b
         };
         job.done("enhance");
-        let rule = LinkRule::new(map.validity(), params.theta)?;
+        let rule = Connectivity::new(map.validity(), params.theta)?;
         let groups = grouper.group(&map, &rule, job.threads); // section 3c
         job.done("group");
         selection.select(groups, params.min)?; // section 3d
         job.done("select");
-        watch.selected(&map, groups, selection);
+        observer.selected(&map, groups, selection);
         let mut runs = selection.runs(groups);
         describer.tally(&map, runs, params.margin, &job.sensor, job.threads);
-        watch.described(describer.tallies());
+        observer.described(describer.tallies());
         if params.has_conditions() {
             selection.retain(groups, |index| params.accepts(&describer.tallies()[index]));
             describer.retain(|tally| params.accepts(tally));

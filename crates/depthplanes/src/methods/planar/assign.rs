@@ -5,29 +5,31 @@
 //! against the planes of the tiles around it; where two planes meet at a crease, both explain the
 //! pixels near it, and the line where they meet, which is known exactly, decides.
 
-use super::block::{BLOCK, DU, DV, HALF, INSIDE, Local, MOST, Near, PIXELS, Pixels, STRETCH, are_inside};
-use super::crease::{Rule, is_near_both};
+use super::block::{
+    BLOCK, Candidates, DU, DV, HALF, INSIDE, Local, MOST_CANDIDATES, PIXELS, Pixels, STRETCH, are_inside,
+};
+use super::crease::{CreaseRule, is_near_both};
 use super::grid::{Grid, NONE};
-use super::layout::Field;
+use super::layout::AffineMap;
 use super::region::Planes;
-use crate::util::parallel::{NumberedRows, in_parts};
+use crate::util::parallel::{NumberedRows, map_reduce};
 use crate::util::simd::vectorised;
 use std::ops::Range;
 
 /// Labels every pixel, on as many threads. `grids`: the tiles, and the blocks with the region that their tiles agree on.
-pub(super) fn assign(field: &Field, grids: [&Grid; 2], planes: &Planes<'_>, threads: usize, image: &mut [u16]) {
-    let per_row = BLOCK * field.stride;
+pub(super) fn assign(affine: &AffineMap, grids: [&Grid; 2], planes: &Planes<'_>, threads: usize, image: &mut [u16]) {
+    let per_row = BLOCK * affine.stride;
     let assign = |blocks: NumberedRows<'_, u16>| {
         let mut scratch = Scratch::default();
         for (row, image) in blocks.each() {
-            let q = &field.q[row * per_row..][..per_row];
+            let q = &affine.q[row * per_row..][..per_row];
             vectorised(
                 #[inline(always)]
-                || assign_row(field.stride, grids, planes, row, q, &mut scratch, image),
+                || assign_row(affine.stride, grids, planes, row, q, &mut scratch, image),
             );
         }
     };
-    in_parts(threads, NumberedRows { first: 0, per_row, all: image }, assign, |(), ()| ());
+    map_reduce(threads, NumberedRows { first: 0, per_row, all: image }, assign, |(), ()| ());
 }
 
 #[inline(always)]
@@ -51,7 +53,7 @@ fn assign_row(
                 within += count;
                 continue;
             }
-            let (near, at) = (Near::new(tiles, column, row), column * BLOCK);
+            let (near, at) = (Candidates::new(tiles, column, row), column * BLOCK);
             if near.count > 0 {
                 let mut block =
                     Block { middle: [column, row].map(|place| (place * BLOCK) as f64 + HALF), q: [0.0; PIXELS] };
@@ -84,7 +86,7 @@ fn label_inside(
     let (region, label) = (planes.region(id), planes.label(id));
     let (first, end) = (columns.start * BLOCK, columns.end * BLOCK);
     let middle = region.at((first + end - 1) as f64 / 2.0, (row * BLOCK) as f64 + HALF);
-    let most = (INSIDE * INSIDE * planes.reach(region, middle)) as f32;
+    let most = (INSIDE * INSIDE * planes.inlier_threshold_squared(region, middle)) as f32;
     let a = region.abc[0] as f32;
     for v in 0..BLOCK {
         let part = v * stride + first..v * stride + end;
@@ -116,18 +118,18 @@ struct Block {
 /// Memory for one block.
 #[derive(Debug)]
 struct Scratch {
-    planes: [Local; MOST],
+    planes: [Local; MOST_CANDIDATES],
     /// For each plane the pixels' squared distances in units of `most`; infinite beyond.
-    squares: [Pixels<f32>; MOST],
+    squares: [Pixels<f32>; MOST_CANDIDATES],
     /// How many other planes go before it.
-    beaten: [Pixels<f32>; MOST],
+    beaten: [Pixels<f32>; MOST_CANDIDATES],
     labels: Pixels<u16>,
 }
 
 impl Default for Scratch {
     fn default() -> Self {
-        let nothing = [[0.0; PIXELS]; MOST];
-        Scratch { planes: [Local::default(); MOST], squares: nothing, beaten: nothing, labels: [0; PIXELS] }
+        let nothing = [[0.0; PIXELS]; MOST_CANDIDATES];
+        Scratch { planes: [Local::default(); MOST_CANDIDATES], squares: nothing, beaten: nothing, labels: [0; PIXELS] }
     }
 }
 
@@ -154,7 +156,7 @@ impl Block {
                 let (first, second) = beaten.split_at_mut(j);
                 let [one, other] = [i, j].map(|at| planes.region(here[at].id));
                 if overlap(&squares[i], &squares[j]) {
-                    Rule::between(one, other, &here[i], &here[j]).apply(
+                    CreaseRule::between(one, other, &here[i], &here[j]).apply(
                         [&squares[i], &squares[j]],
                         &mut first[i],
                         &mut second[0],
@@ -182,7 +184,7 @@ impl Block {
     fn local(&self, id: u32, planes: &Planes<'_>) -> Local {
         let (region, [u, v]) = (planes.region(id), self.middle);
         let c = region.at(u, v);
-        let most = planes.reach(region, c) as f32;
+        let most = planes.inlier_threshold_squared(region, c) as f32;
         Local { id, a: region.abc[0] as f32, b: region.abc[1] as f32, c: c as f32, most }
     }
 

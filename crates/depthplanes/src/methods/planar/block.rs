@@ -42,7 +42,7 @@ pub(super) struct Local {
 }
 
 /// Most planes that a block's pixels are held against.
-pub(super) const MOST: usize = 12;
+pub(super) const MOST_CANDIDATES: usize = 12;
 /// Blocks of a row that are looked at together, a multiple of which it has; the noise is taken to be the same in all that
 /// are labelled at a time.
 pub(super) const STRETCH: usize = 8;
@@ -75,15 +75,15 @@ pub(super) fn are_inside(blocks: &Grid, first: usize, row: usize) -> [u32; STRET
 const AROUND: usize = 8;
 
 /// The regions of the tiles of a block and of those up to two tiles around it, the smallest number first.
-pub(super) struct Near {
-    ids: [u32; MOST],
+pub(super) struct Candidates {
+    ids: [u32; MOST_CANDIDATES],
     pub(super) count: usize,
 }
 
-impl Near {
+impl Candidates {
     #[inline(always)]
     pub(super) fn new(tiles: &Grid, column: usize, row: usize) -> Self {
-        let mut near = Near { ids: [NONE; MOST], count: 0 };
+        let mut near = Candidates { ids: [NONE; MOST_CANDIDATES], count: 0 };
         let first = (2 * column).saturating_sub(2).min(tiles.columns - AROUND);
         // Regions are fewer than labels; as short numbers they are compared twice as many at a time.
         let mut left = [[u16::MAX; AROUND]; 6];
@@ -99,7 +99,7 @@ impl Near {
                 left[x] = ids[x] as u16 | far[x];
             }
         }
-        while near.count < MOST {
+        while near.count < MOST_CANDIDATES {
             let least = left.as_flattened().iter().fold(u16::MAX, |least, &id| least.min(id));
             if least == u16::MAX {
                 break;
@@ -118,7 +118,7 @@ impl Near {
 
 /// The planes that a pixel is held against: the regions' numbers, and the middle of its block, which decides on the
 /// noise.
-pub(super) struct Held {
+pub(super) struct PixelCandidates {
     pub(super) ids: Vec<u32>,
     pub(super) middle: [f64; 2],
     /// How much further off than elsewhere it may lie.
@@ -126,12 +126,12 @@ pub(super) struct Held {
 }
 
 /// Which planes stage "assign" holds the pixel in column `u`, row `v` against.
-pub(super) fn held_against(grids: [&Grid; 2], [u, v]: [usize; 2]) -> Held {
+pub(super) fn candidates_of_pixel(grids: [&Grid; 2], [u, v]: [usize; 2]) -> PixelCandidates {
     let [column, row] = [u / BLOCK, v / BLOCK];
-    let near = Near::new(grids[0], column, row);
+    let near = Candidates::new(grids[0], column, row);
     let middle = [column, row].map(|place| (place * BLOCK) as f64 + HALF);
     let is_inside = are_inside(grids[1], column - column % STRETCH, row)[column % STRETCH] != NONE;
-    Held { ids: near.ids().to_vec(), middle, factor: if is_inside { INSIDE } else { 1.0 } }
+    PixelCandidates { ids: near.ids().to_vec(), middle, factor: if is_inside { INSIDE } else { 1.0 } }
 }
 
 #[cfg(test)]
@@ -175,10 +175,10 @@ mod tests {
                 around.sort_unstable();
                 around.dedup();
                 let expected: Vec<u32> = around.iter().copied().filter(|&id| id != NONE).collect();
-                assert_eq!(Near::new(tiles, column, row).ids(), expected);
+                assert_eq!(Candidates::new(tiles, column, row).ids(), expected);
                 let inside = are_inside(blocks, column - column % STRETCH, row)[column % STRETCH];
                 assert_eq!(inside, if around.len() == 1 { around[0] } else { NONE });
-                let held = held_against([&grids[0], &grids[1]], [column * BLOCK + 3, row * BLOCK + 5]);
+                let held = candidates_of_pixel([&grids[0], &grids[1]], [column * BLOCK + 3, row * BLOCK + 5]);
                 assert_eq!((held.ids, held.factor), (expected, if inside == NONE { 1.0 } else { INSIDE }));
             }
         }

@@ -75,9 +75,9 @@ pub(super) fn add_run(
 }
 
 /// Fewest pixels of a region whose bow means something.
-pub(super) const LEAST: f64 = 240.0;
+pub(super) const BOW_PIXELS: f64 = 240.0;
 /// Cells of a region that are enough to see its shape: where so many coarse ones lie in it, finer ones are not looked at.
-const PLENTY: f64 = 40.0;
+const SHAPE_CELLS: f64 = 40.0;
 
 /// Degrees between the normals of a quadratic at 1.5 standard deviations of a region's extent to either side of its middle.
 fn turn_of(region: &Region, quadratic: &[f64; 6], rays: &Rays) -> f64 {
@@ -116,7 +116,7 @@ pub(super) struct Bows {
 }
 
 impl Bows {
-    /// Measures all regions; the coarser grids know theirs ([`Pyramid::hand_up`]).
+    /// Measures all regions; the coarser grids know theirs ([`Pyramid::propagate_up`]).
     pub(super) fn measure(&mut self, pyramid: &Pyramid, all: &[Region]) {
         let (cells, Bows { sums, gains, levels }) = (pyramid.grids[0].len(), self);
         reserve_to(sums, cells);
@@ -137,7 +137,7 @@ impl Bows {
                 });
             }
             for (sums, seen) in sums.iter().zip(levels.iter_mut()) {
-                let shows = sums.cells >= PLENTY || level == 0;
+                let shows = sums.cells >= SHAPE_CELLS || level == 0;
                 *seen = if *seen == OPEN && shows { level as u8 } else { *seen };
             }
         }
@@ -168,7 +168,7 @@ impl Bows {
     /// is too small to tell.
     pub(super) fn rms(&self, id: u32, region: &Region) -> Option<[f64; 2]> {
         let pixels = self.sums[id as usize].pixels;
-        (pixels >= LEAST)
+        (pixels >= BOW_PIXELS)
             .then(|| [(self.gain(id).max(0.0) / pixels).sqrt(), BOW * (region.smooth / region.variance).sqrt()])
     }
 }
@@ -206,20 +206,20 @@ impl Shown {
 const TURN_SINE: f64 = 0.399;
 /// Standard deviations of a pixel by which a tile lies off the plane where the surface does turn: what rounding does, its
 /// pixels may share.
-const DEVIATIONS: f64 = 3.0;
+const TURN_DEVIATIONS: f64 = 3.0;
 /// Share of the border beyond which it turns gently: a facet on the rim of a ball has a step on its other side.
-const SHARE: f64 = 0.4;
+const TURNING_SHARE: f64 = 0.4;
 /// Fewest places along a border that say something: those of 2 x 2 tiles.
-const FEW: f64 = 8.0;
+const BORDER_PLACES: f64 = 8.0;
 /// A region of so many times the pixels is no facet of the same surface: a wall beside a bevel.
-const LARGER: f64 = 4.0;
+const LARGER_REGION: f64 = 4.0;
 /// Pixels that a region counts as having at least, when it is held against larger ones: facets come in all sizes. Of
 /// regions that have so many the planes say by how much they turn.
-const USUAL: f64 = 240.0;
+const USUAL_PIXELS: f64 = 240.0;
 /// Valid pixels of a tile whose mean says something.
-const HALF: f32 = 8.0;
+const MEAN_PIXELS: f32 = 8.0;
 /// Valid pixels of a tile over which a surface goes on: a gap takes a column of four from one tile, or from two.
-const WHOLE: f32 = 13.0;
+const WHOLE_PIXELS: f32 = 13.0;
 
 /// n of a region's plane `n . point = 1`.
 fn normal_of(rays: &Rays, region: &Region) -> Vec3 {
@@ -256,7 +256,8 @@ impl Border<'_> {
                 let mut look = |is_there: bool, next: usize, far: [usize; 2], step: [f64; 2]| {
                     if is_there && grid.region[next] != self.id {
                         places += 1.0;
-                        let goes_on = grid.pixels(next) >= WHOLE && self.turns_to(normal, [column, row], far, step);
+                        let goes_on =
+                            grid.pixels(next) >= WHOLE_PIXELS && self.turns_to(normal, [column, row], far, step);
                         gentle += f64::from(u8::from(goes_on));
                     }
                 };
@@ -267,7 +268,7 @@ impl Border<'_> {
                 look(row + 2 < grid.rows, at + grid.columns, [column, row + 2], [0.0, 1.0]);
             }
         }
-        places >= FEW && gentle >= SHARE * places
+        places >= BORDER_PLACES && gentle >= TURNING_SHARE * places
     }
 
     /// Whether the tiles to all four sides are the region's.
@@ -287,19 +288,20 @@ impl Border<'_> {
         let region = &all[*id as usize];
         let at = far[1] * grid.columns + far[0];
         let other = grid.region[at];
-        let is_larger = || other != NONE && all[other as usize].sums.n > LARGER * region.sums.n.max(USUAL);
-        if other == *id || grid.pixels(at) < HALF || is_larger() {
+        let is_larger =
+            || other != NONE && all[other as usize].sums.n > LARGER_REGION * region.sums.n.max(USUAL_PIXELS);
+        if other == *id || grid.pixels(at) < MEAN_PIXELS || is_larger() {
             return false;
         }
         let side = grid.side as f64;
         let middle = |tile: [usize; 2]| tile.map(|place| (place as f64 + 0.5) * side - 0.5);
         let ([u, v], q) = (middle(far), grid.q(at));
         let on_plane = region.at(u, v);
-        if (q - on_plane).powi(2) <= DEVIATIONS * DEVIATIONS * f64::from(grid.variance[at]) {
+        if (q - on_plane).powi(2) <= TURN_DEVIATIONS * TURN_DEVIATIONS * f64::from(grid.variance[at]) {
             return false;
         }
         let own = middle(tile);
-        if let Some(other) = all.get(other as usize).filter(|other| other.sums.n.min(region.sums.n) >= USUAL) {
+        if let Some(other) = all.get(other as usize).filter(|other| other.sums.n.min(region.sums.n) >= USUAL_PIXELS) {
             // Growth may have crossed the edge; the planes themselves say where it is.
             let inner = [0, 1].map(|i| own[i] - 0.5 * side * step[i]);
             let [before, behind] = [inner, [u, v]].map(|[u, v]| other.at(u, v) - region.at(u, v));

@@ -1,15 +1,15 @@
-//! Stage "curved": facets of curved surfaces are told from planes.
+//! Stage "judge": facets of curved surfaces are told from planes.
 //!
-//! In: regions of cells and the pairs that touch. Out: which regions are curved. Growth cuts a ball or a column
-//! into facets, each flat to within the noise. Five signs tell them ([`Sign`]). A region's own cell means bow: a
-//! quadratic explains more of them than chance would. Across a joint of two facets, or through a small facet and what
+//! In: regions of cells and the edges of their adjacency graph. Out: which regions are curved. Growth cuts a ball or a column
+//! into facets, each flat to within the noise. Five kinds of evidence tell them ([`Evidence`]). A region's own cell means bow: a
+//! quadratic explains more of them than chance would. Across the edge of two facets, or through a small facet and what
 //! is around it, one quadratic runs on smoothly, while the crease of two planes leaves it far off: the best
 //! parabola through a roof misses its ridge by 3/16 of the height. And a small region continues a curved one.
 
 use super::curvature::{Border, Bows, Frame, add_run};
 use super::grid::{NONE, Place};
 use super::grow::Regions;
-use super::merge::Pair;
+use super::merge::Edge;
 use super::pyramid::Pyramid;
 use super::region::{CellBox, Region};
 use super::thresholds::{
@@ -20,44 +20,44 @@ use crate::methods::rays::{Rays, dot};
 use crate::noise::NoiseModel;
 use crate::statistics::quadratic::QuadraticSums;
 use crate::util::memory::reserve_to;
-use crate::util::parallel::{Numbered, in_parts};
+use crate::util::parallel::{Numbered, map_reduce};
 use crate::util::runs::each_run;
 use crate::util::switches::is_on;
 
 /// Fewest cells that a quadratic, six numbers, is fitted to.
-const ENOUGH: f64 = 12.0;
+const QUADRATIC_CELLS: f64 = 12.0;
 /// Fewest cells of each side of a joint.
-const FEW: f64 = 4.0;
+const SIDE_CELLS: f64 = 4.0;
 /// Standard deviations between two planes where they touch, from which on they are two surfaces.
-const STEP: f64 = 6.0;
+const STEP_DEVIATIONS: f64 = 6.0;
 /// Pixels below which a region's surroundings are looked at as well: its neighbours may be too small for regions.
-const SMALL: f64 = 1000.0;
+const LOOK_AROUND_PIXELS: f64 = 1000.0;
 /// Pixels from which on a region is no facet of a mesh or a ball beside others of them, unless it bows itself.
-const LARGE: f64 = 4000.0;
+const NO_FACET_PIXELS: f64 = 4000.0;
 /// Share of the squares about a plane that a quadratic may leave around a small region: half of what it leaves of
 /// a surface that turns off at a crease.
-const CREASE: f64 = 0.03;
+const CREASE_SHARE: f64 = 0.03;
 /// Deviations of a pixel from a small region's plane up to which a tile around it is looked at: a quadratic through a roof
 /// that rises d to each side is 0.07 d off, root mean square.
-const NEAR: f64 = 20.0;
+const NEAR_DEVIATIONS: f64 = 20.0;
 /// How far around, in tiles.
-const RING: usize = 1;
+const RING_TILES: usize = 1;
 
 /// Memory of this stage.
 #[derive(Debug, Default)]
-pub(super) struct Facets {
+pub(super) struct CurvatureTest {
     pub(super) bows: Bows,
     pub(super) boxes: Vec<CellBox>,
     /// For each region what shows that it is a facet of a curved surface, if anything.
-    pub(super) signs: Vec<Option<Sign>>,
-    /// For each pair of regions what is known of its joint.
-    joints: Vec<Option<SmoothJoint>>,
+    pub(super) evidence: Vec<Option<Evidence>>,
+    /// For each edge what is known of the surface across it.
+    joints: Vec<Option<SmoothEdge>>,
     folds: Vec<Fold>,
 }
 
 /// Two regions through which one quadratic runs.
 #[derive(Clone, Copy, Debug)]
-struct SmoothJoint {
+struct SmoothEdge {
     small: u32,
     large: u32,
     /// Pixels of the larger one that were seen.
@@ -66,11 +66,11 @@ struct SmoothJoint {
 
 /// What shows that a region is a facet of a curved surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Sign {
+pub(super) enum Evidence {
     /// Its own cells bow.
     Bow,
     /// One quadratic runs through it and that neighbour.
-    Joint(u32),
+    Continuity(u32),
     /// It is small, and one quadratic runs through it and what is around it.
     Surroundings,
     /// Off its border the surface goes on and turns gently.
@@ -81,66 +81,66 @@ pub(super) enum Sign {
 
 /// What is known of the sensor.
 #[derive(Clone, Copy)]
-pub(super) struct Optics<'a> {
+pub(super) struct Sensing<'a> {
     pub(super) noise: &'a NoiseModel,
     pub(super) rays: &'a Rays,
 }
 
 /// What is known of the regions and the map they lie in.
-struct Scene<'a> {
+struct Context<'a> {
     pyramid: &'a Pyramid,
     all: &'a [Region],
     noise: &'a NoiseModel,
-    is_strip: &'a [bool],
+    is_redundant: &'a [bool],
     boxes: &'a [CellBox],
     bows: &'a Bows,
 }
 
-impl Facets {
-    /// Marks the regions that are facets of a curved surface. Strips across a crease (`is_strip`) are no facets, and say
+impl CurvatureTest {
+    /// Marks the regions that are facets of a curved surface. Strips across a crease (`is_redundant`) are no facets, and say
     /// nothing of others: through a strip and a narrow plane beside it there often is a quadratic. On as many threads.
     pub(super) fn mark(
         &mut self,
         pyramid: &Pyramid,
         regions: &mut Regions,
-        pairs: &[Pair],
-        is_strip: &[bool],
-        Optics { noise, rays }: Optics<'_>,
+        edges: &[Edge],
+        is_redundant: &[bool],
+        Sensing { noise, rays }: Sensing<'_>,
         threads: usize,
     ) {
         let cells = pyramid.grids[0].len();
-        reserve_to(&mut self.signs, cells);
+        reserve_to(&mut self.evidence, cells);
         reserve_to(&mut self.joints, 4 * cells);
         reserve_to(&mut self.folds, cells);
-        let Facets { bows, boxes, signs, joints, folds } = self;
-        let is_bowed = |(id, is_strip): (u32, &bool)| {
-            is_on("bow") && !is_strip && bows.is_bowed(id, &regions.all[id as usize], rays, TURN)
+        let CurvatureTest { bows, boxes, evidence, joints, folds } = self;
+        let is_bowed = |(id, is_redundant): (u32, &bool)| {
+            is_on("bow") && !is_redundant && bows.is_bowed(id, &regions.all[id as usize], rays, TURN)
         };
-        signs.extend((0..).zip(is_strip).map(|region| is_bowed(region).then_some(Sign::Bow)));
-        let scene = Scene { pyramid, all: &regions.all, noise, is_strip, boxes, bows };
+        evidence.extend((0..).zip(is_redundant).map(|region| is_bowed(region).then_some(Evidence::Bow)));
+        let scene = Context { pyramid, all: &regions.all, noise, is_redundant, boxes, bows };
         if is_on("joint") {
-            scene.find_joints(pairs, joints, signs, threads);
+            scene.find_joints(edges, joints, evidence, threads);
         }
-        scene.measure_folds(pairs, rays, folds);
-        let look_around = |part: Numbered<'_, Option<Sign>>| {
-            for (id, sign) in (part.first..).zip(part.all).filter(|(id, sign)| sign.is_none() && !is_strip[*id]) {
+        scene.measure_folds(edges, rays, folds);
+        let look_around = |part: Numbered<'_, Option<Evidence>>| {
+            for (id, sign) in (part.first..).zip(part.all).filter(|(id, sign)| sign.is_none() && !is_redundant[*id]) {
                 let (region, number) = (&scene.all[id], id as u32);
-                let is_small = region.sums.n < LARGE;
+                let is_small = region.sums.n < NO_FACET_PIXELS;
                 let border = Border { grid: &pyramid.grids[0], all: scene.all, rays, id: number };
-                if is_on("surroundings") && region.sums.n < SMALL && scene.surroundings(number).bends() {
-                    *sign = Some(Sign::Surroundings);
+                if is_on("surroundings") && region.sums.n < LOOK_AROUND_PIXELS && scene.surroundings(number).bends() {
+                    *sign = Some(Evidence::Surroundings);
                 } else if is_on("turns") && is_small && border.turns(&boxes[id]) {
-                    *sign = Some(Sign::Turns);
+                    *sign = Some(Evidence::Turns);
                 } else if is_on("folds")
                     && folds[id].is_gentle()
                     && ((is_small && folds[id].goes_on) || bows.is_bowed(number, region, rays, 0.0))
                 {
-                    *sign = Some(Sign::Folds);
+                    *sign = Some(Evidence::Folds);
                 }
             }
         };
-        in_parts(threads, Numbered { first: 0, all: &mut signs[..] }, look_around, |(), ()| ());
-        regions.all.iter_mut().zip(signs).for_each(|(region, sign)| region.is_curved |= sign.is_some());
+        map_reduce(threads, Numbered { first: 0, all: &mut evidence[..] }, look_around, |(), ()| ());
+        regions.all.iter_mut().zip(evidence).for_each(|(region, sign)| region.is_curved |= sign.is_some());
     }
 }
 
@@ -169,26 +169,26 @@ fn turn_gently(a: &Region, b: &Region, rays: &Rays) -> bool {
 }
 
 /// Whether there is a step between two regions where they touch.
-pub(super) fn are_apart(all: &[Region], noise: &NoiseModel, pair: &Pair) -> bool {
-    let [u, v] = pair.middle();
-    let [a, b] = pair.ids.map(|id| all[id as usize].at(u, v));
+pub(super) fn are_apart(all: &[Region], noise: &NoiseModel, edge: &Edge) -> bool {
+    let [u, v] = edge.middle();
+    let [a, b] = edge.ids.map(|id| all[id as usize].at(u, v));
     let q = (a + b) / 2.0;
-    (a - b).powi(2) > STEP * STEP * (noise.variance(q) + noise.smooth_sigma(q).powi(2))
+    (a - b).powi(2) > STEP_DEVIATIONS * STEP_DEVIATIONS * (noise.variance(q) + noise.smooth_sigma(q).powi(2))
 }
 
-impl Scene<'_> {
+impl Context<'_> {
     /// How much of each region's border turns gently, towards neighbours that are no strips.
-    fn measure_folds(&self, pairs: &[Pair], rays: &Rays, folds: &mut Vec<Fold>) {
+    fn measure_folds(&self, edges: &[Edge], rays: &Rays, folds: &mut Vec<Fold>) {
         folds.resize(self.all.len(), Fold::default());
-        for pair in pairs.iter().filter(|pair| !self.has_strip(pair)) {
-            let [a, b] = pair.ids.map(|id| id as usize);
-            let is_gentle = !self.are_apart(pair) && turn_gently(&self.all[a], &self.all[b], rays);
+        for edge in edges.iter().filter(|edge| !self.has_redundant(edge)) {
+            let [a, b] = edge.ids.map(|id| id as usize);
+            let is_gentle = !self.are_apart(edge) && turn_gently(&self.all[a], &self.all[b], rays);
             for (id, other) in [(a, b), (b, a)] {
                 let counts = is_gentle && self.all[other].sums.n > GENTLE_SIZE * self.all[id].sums.n;
                 let is_larger = self.all[other].sums.n > GENTLE_LARGER * self.all[id].sums.n;
                 folds[id].goes_on |= counts && (is_larger || folds[id].gentle > 0.0);
-                folds[id].gentle += if counts { pair.contacts } else { 0.0 };
-                folds[id].all += pair.contacts;
+                folds[id].gentle += if counts { edge.contacts } else { 0.0 };
+                folds[id].all += edge.contacts;
             }
         }
     }
@@ -196,79 +196,79 @@ impl Scene<'_> {
     /// Marks the regions that one quadratic joins to a neighbour. On as many threads.
     fn find_joints(
         &self,
-        pairs: &[Pair],
-        joints: &mut Vec<Option<SmoothJoint>>,
-        signs: &mut [Option<Sign>],
+        edges: &[Edge],
+        joints: &mut Vec<Option<SmoothEdge>>,
+        evidence: &mut [Option<Evidence>],
         threads: usize,
     ) {
-        joints.resize(pairs.len(), None);
-        let look_along = |part: Numbered<'_, Option<SmoothJoint>>| {
-            for (pair, joint) in pairs[part.first..].iter().zip(part.all) {
-                *joint = self.smooth_joint(pair, signs);
+        joints.resize(edges.len(), None);
+        let look_along = |part: Numbered<'_, Option<SmoothEdge>>| {
+            for (edge, joint) in edges[part.first..].iter().zip(part.all) {
+                *joint = self.smooth_joint(edge, evidence);
             }
         };
-        in_parts(threads, Numbered { first: 0, all: &mut joints[..] }, look_along, |(), ()| ());
-        for &SmoothJoint { small, large, seen } in joints.iter().flatten() {
-            signs[small as usize].get_or_insert(Sign::Joint(large));
+        map_reduce(threads, Numbered { first: 0, all: &mut joints[..] }, look_along, |(), ()| ());
+        for &SmoothEdge { small, large, seen } in joints.iter().flatten() {
+            evidence[small as usize].get_or_insert(Evidence::Continuity(large));
             if 2.0 * seen >= self.all[large as usize].sums.n {
-                signs[large as usize].get_or_insert(Sign::Joint(small));
+                evidence[large as usize].get_or_insert(Evidence::Continuity(small));
             }
         }
     }
 
-    /// The regions of a pair, if one quadratic runs through both; none if it is known of both that they are curved.
-    fn smooth_joint(&self, pair: &Pair, signs: &[Option<Sign>]) -> Option<SmoothJoint> {
-        if self.has_strip(pair) || self.are_apart(pair) {
+    /// The regions of an edge, if one quadratic runs through both; none if it is known of both that they are curved.
+    fn smooth_joint(&self, edge: &Edge, evidence: &[Option<Evidence>]) -> Option<SmoothEdge> {
+        if self.has_redundant(edge) || self.are_apart(edge) {
             return None;
         }
-        let [a, b] = pair.ids;
+        let [a, b] = edge.ids;
         let is_larger = self.boxes[a as usize].area() < self.boxes[b as usize].area();
         let [small, large] = if is_larger { [a, b] } else { [b, a] };
-        let is_known = [small, large].iter().all(|&id| signs[id as usize].is_some());
+        let is_known = [small, large].iter().all(|&id| evidence[id as usize].is_some());
         if is_known || self.bows.gain(small) + self.bows.gain(large) < JOINT_GAIN.variances {
             return None;
         }
         let seen = self.joint(small, large).is_smooth()?;
-        Some(SmoothJoint { small, large, seen })
+        Some(SmoothEdge { small, large, seen })
     }
 
     /// Whether one of two regions is a strip across a crease.
-    fn has_strip(&self, pair: &Pair) -> bool {
-        pair.ids.iter().any(|&id| self.is_strip[id as usize])
+    fn has_redundant(&self, edge: &Edge) -> bool {
+        edge.ids.iter().any(|&id| self.is_redundant[id as usize])
     }
 
     /// Whether there is a step between two regions where they touch.
-    fn are_apart(&self, pair: &Pair) -> bool {
-        are_apart(self.all, self.noise, pair)
+    fn are_apart(&self, edge: &Edge) -> bool {
+        are_apart(self.all, self.noise, edge)
     }
 
     /// Looks at a small region and the flat tiles around it that no large plane explains.
-    fn surroundings(&self, small: u32) -> Joint {
+    fn surroundings(&self, small: u32) -> Continuity {
         let plane = &self.all[small as usize];
         let grid = &self.pyramid.grids[0];
         let CellBox { first, last } = self.boxes[small as usize];
         let frame = Frame::of(plane);
         let mut sums = [QuadraticSums::default(); 2];
-        for row in first[1].saturating_sub(RING)..(last[1] + RING + 1).min(grid.rows) {
-            for column in first[0].saturating_sub(RING)..(last[0] + RING + 1).min(grid.columns) {
+        for row in first[1].saturating_sub(RING_TILES)..(last[1] + RING_TILES + 1).min(grid.rows) {
+            for column in first[0].saturating_sub(RING_TILES)..(last[0] + RING_TILES + 1).min(grid.columns) {
                 let at = row * grid.columns + column;
                 let id = grid.region[at];
                 let is_own = id == small;
-                let is_loose = || id == NONE || self.all[id as usize].sums.n < SMALL;
+                let is_loose = || id == NONE || self.all[id as usize].sums.n < LOOK_AROUND_PIXELS;
                 if is_own || (grid.roughness[at] <= 1.0 && is_loose()) {
                     let cell = grid.cell(Place { row: row as u32, column: column as u32 });
                     let off = cell.residual_about(plane.abc, plane.origin) / cell.n;
-                    if is_own || off * off <= NEAR * NEAR * cell.variance {
+                    if is_own || off * off <= NEAR_DEVIATIONS * NEAR_DEVIATIONS * cell.variance {
                         add_run(&mut sums[usize::from(is_own)], grid, row, column..column + 1, plane, None, &frame);
                     }
                 }
             }
         }
-        Joint::of(sums)
+        Continuity::of(sums)
     }
 
     /// Looks at a region and at another, within its box and as much again on each side.
-    fn joint(&self, small: u32, large: u32) -> Joint {
+    fn joint(&self, small: u32, large: u32) -> Continuity {
         let plane = &self.all[small as usize];
         let level = self.bows.level(small);
         let grid = &self.pyramid.grids[level];
@@ -284,33 +284,33 @@ impl Scene<'_> {
                 }
             });
         }
-        Joint::of(sums)
+        Continuity::of(sums)
     }
 }
 
 /// How well one quadratic explains a small region and its neighbours around it. First of each pair the
 /// neighbours, then the region.
-struct Joint {
+struct Continuity {
     sums: [QuadraticSums; 2],
     /// Squares of cell means about the quadratic, in variances, beyond what noise leaves.
     missed: [f64; 2],
 }
 
-impl Joint {
+impl Continuity {
     fn of(sums: [QuadraticSums; 2]) -> Self {
         let quadratic = sums[0].merge(&sums[1]).solve::<6>();
         let missed = [0, 1].map(|which: usize| sums[which].left_by(&quadratic) - sums[which].cells);
-        Joint { sums, missed }
+        Continuity { sums, missed }
     }
 
     /// Whether a quadratic through them means something.
     fn is_determined(&self) -> bool {
-        self.sums[1].cells >= FEW && self.sums.iter().map(|sums| sums.cells).sum::<f64>() >= ENOUGH
+        self.sums[1].cells >= SIDE_CELLS && self.sums.iter().map(|sums| sums.cells).sum::<f64>() >= QUADRATIC_CELLS
     }
 
     /// Whether enough is seen of both sides as well.
     fn has_enough(&self) -> bool {
-        self.is_determined() && self.sums[0].cells >= FEW
+        self.is_determined() && self.sums[0].cells >= SIDE_CELLS
     }
 
     /// Whether it misses neither by more.
@@ -340,7 +340,7 @@ impl Joint {
         let both = self.sums[0].merge(&self.sums[1]);
         let missed: f64 = self.missed.iter().sum();
         let by_plane = both.left_by(&both.solve::<3>()) - both.cells;
-        let is_bent = self.is_close(JOINT_MISS) || (self.is_close(LOOSE_MISS) && missed <= CREASE * by_plane);
+        let is_bent = self.is_close(JOINT_MISS) || (self.is_close(LOOSE_MISS) && missed <= CREASE_SHARE * by_plane);
         self.has_enough() && self.is_better(by_plane, LOOSE_GAIN) && is_bent
     }
 }

@@ -5,13 +5,13 @@
 //! not theirs. As of planes, a region has more than `min` pixels.
 
 use super::curved::are_apart;
-use super::merge::Pair;
+use super::merge::Edge;
 use super::region::Region;
-use crate::components::LinkRule;
+use crate::components::Connectivity;
 use crate::detection::{Curved, CurvedRegion};
 use crate::error::Result;
 use crate::map::{DepthView, Pixel};
-use crate::methods::finish::Finisher;
+use crate::methods::extraction::Extraction;
 use crate::methods::method::Job;
 use crate::noise::NoiseModel;
 use crate::util::memory::reserve_to;
@@ -20,7 +20,7 @@ use crate::util::union_find::{find, unite};
 /// Gives the facets of one surface one number in a region image. `parents`: memory to work in.
 pub(super) fn join_facets(
     all: &[Region],
-    pairs: &[Pair],
+    edges: &[Edge],
     noise: &NoiseModel,
     parents: &mut Vec<u16>,
     image: &mut [u16],
@@ -28,9 +28,9 @@ pub(super) fn join_facets(
 ) {
     reserve_to(parents, most_regions);
     parents.extend((0..all.len()).map(|id| id as u16));
-    for pair in pairs {
-        if pair.ids.iter().all(|&id| all[id as usize].is_curved) && !are_apart(all, noise, pair) {
-            let [a, b] = pair.ids.map(|id| id as u16);
+    for edge in edges {
+        if edge.ids.iter().all(|&id| all[id as usize].is_curved) && !are_apart(all, noise, edge) {
+            let [a, b] = edge.ids.map(|id| id as u16);
             unite(parents, a, b);
         }
     }
@@ -42,15 +42,15 @@ pub(super) fn join_facets(
 /// # Errors
 /// [`crate::Error::TooManyPlanes`] if they are more than labels can name.
 pub(super) fn curved_of<T: Pixel>(
-    finisher: &mut Finisher,
+    extraction: &mut Extraction,
     map: &DepthView<'_, T>,
     ids: &DepthView<'_, u16>,
     min: u32,
     job: &Job<'_>,
     old: Option<Curved>,
 ) -> Result<Curved> {
-    let Finisher { grouper, selection, describer } = finisher;
-    let groups = grouper.group(ids, &LinkRule::new(ids.validity(), 0.0)?, job.threads);
+    let Extraction { grouper, selection, describer } = extraction;
+    let groups = grouper.group(ids, &Connectivity::new(ids.validity(), 0.0)?, job.threads);
     selection.select(groups, min)?;
     describer.tally(map, selection.runs(groups), 0, &job.sensor, job.threads);
     let Curved { mut labels, mut regions } = old.unwrap_or_default();

@@ -10,12 +10,12 @@ use super::explain::explain;
 use super::parameters::Planar;
 use super::pipeline::Runner;
 use crate::camera::Intrinsics;
-use crate::components::{Grouper, Run};
+use crate::components::{ConnectedComponents, Run};
 use crate::detection::Detection;
 use crate::error::Result;
 use crate::explanation::{Explanation, Finding, Suggestion, Verdict};
 use crate::map::{DepthView, Pixel, Validity};
-use crate::methods::finish::{Finisher, STAGES, Wanted};
+use crate::methods::extraction::{Extraction, STAGES, Wanted};
 use crate::methods::method::{Job, MethodInfo};
 use crate::methods::tries::Tries;
 use crate::noise::{Enlargement, EnlargementFinder};
@@ -34,7 +34,7 @@ pub(super) struct Source {
     found: Detection,
     /// Labels of the source on the whole map.
     image: Vec<u16>,
-    finisher: Finisher,
+    extraction: Extraction,
     pieces: Pieces,
 }
 
@@ -50,7 +50,7 @@ impl Source {
         job: &mut Job<'_>,
         out: &mut Detection,
     ) -> Result<()> {
-        let Source { finder, pixels, found, image, finisher, pieces } = self;
+        let Source { finder, pixels, found, image, extraction, pieces } = self;
         let Some(enlargement) = finder.find(map) else { return runner.planar(*map, job, out, &mut |_, _, _| ()) };
         let Planar { min, min_area, .. } = runner.params;
         if min_area > 0.0 {
@@ -64,12 +64,12 @@ impl Source {
         })?;
         let labels = enlarge(&found.labels, &enlargement, map, image)?;
         let wanted = Wanted { min, min_area, noise: noise.as_ref(), valid_pixels: map.valid_pixels() };
-        finisher.finish_united(map, &labels, &wanted, |grouper| pieces.join(&labels, grouper), job, out)?;
+        extraction.extract_united(map, &labels, &wanted, |grouper| pieces.join(&labels, grouper), job, out)?;
         errors_of_source(found, labels, &enlargement, out);
         let old = out.curved.take();
         if let Some(curved) = &found.curved {
             let labels = enlarge(&curved.labels, &enlargement, map, image)?;
-            out.curved = Some(curved_of(finisher, map, &labels, min, job, old)?);
+            out.curved = Some(curved_of(extraction, map, &labels, min, job, old)?);
             job.done("label");
         }
         Ok(())
@@ -225,7 +225,7 @@ struct Pieces {
 }
 
 impl Pieces {
-    fn join(&mut self, labels: &DepthView<'_, u16>, grouper: &mut Grouper) {
+    fn join(&mut self, labels: &DepthView<'_, u16>, grouper: &mut ConnectedComponents) {
         let Pieces { pairs, first } = self;
         reserve_to(pairs, labels.area());
         first.clear();

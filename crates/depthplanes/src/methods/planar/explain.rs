@@ -1,12 +1,12 @@
 //! Why a pixel has a plane or none.
 //!
-//! In: a run of the method that is watched at a few moments. Out: an [`Explanation`]: what was seen ([`Seen`]), the verdict,
+//! In: a run of the method that is watched at a few checkpoints. Out: an [`Explanation`]: what was seen ([`Trace`]), the verdict,
 //! and changes of parameters that were tried.
 
 use super::grow::fewest;
 use super::parameters::Planar;
-use super::pipeline::{Moment, Runner};
-use super::trace::{Fate, Seen, label_of};
+use super::pipeline::{Checkpoint, Runner};
+use super::trace::{Fate, Trace, label_of};
 use crate::detection::Detection;
 use crate::error::Result;
 use crate::explanation::{Explanation, Limit, Verdict};
@@ -34,9 +34,9 @@ pub(super) fn explain(
     job: &mut Job<'_>,
     at: [usize; 2],
 ) -> Result<Explanation> {
-    let (mut seen, mut out) = (Seen::new(at, job.sensor), Detection::default());
-    let mut watch = |moment: Moment, run: &Runner, noise: &NoiseModel| seen.look(moment, run, noise);
-    with_view!(map, map => runner.planar(map, job, &mut out, &mut watch))?;
+    let (mut seen, mut out) = (Trace::new(at, job.sensor), Detection::default());
+    let mut observe = |moment: Checkpoint, run: &Runner, noise: &NoiseModel| seen.look(moment, run, noise);
+    with_view!(map, map => runner.planar(map, job, &mut out, &mut observe))?;
     let value = with_view!(map, map => map.row(at[1])[at[0]].into());
     seen.conclude(runner, &out);
     let verdict = seen.verdict(runner, &out);
@@ -59,7 +59,7 @@ fn dropped(run: &Runner, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) ->
     Ok(Verdict::Dropped { parameter: "min-area", value: area, limit: Limit::AtLeast(run.params.min_area) })
 }
 
-impl Seen {
+impl Trace {
     fn verdict(&self, run: &Runner, out: &Detection) -> Verdict {
         let label = out.labels[self.at[1] * out.width + self.at[0]];
         let [pixels, roughness] = self.tile;

@@ -7,12 +7,12 @@
 //! map's edge has none there. Merging looked at tiles; on a strip thinner than a tile two pieces of a floor may meet that
 //! had no tiles side by side.
 
-use super::layout::{Field, ROWS, finer, in_bands};
+use super::layout::{AffineMap, ROWS, finer, for_each_band};
 use super::merge::merge_cost;
 use super::region::{BENT, Planes, Region};
 use crate::components::boundary::Boundary;
 use crate::util::memory::reserve_to;
-use crate::util::parallel::{in_parts, in_rows};
+use crate::util::parallel::{for_row_blocks, map_reduce};
 use crate::util::simd::vectorised;
 use crate::util::switches::is_on;
 use crate::util::union_find::find;
@@ -20,7 +20,7 @@ use std::ops::Range;
 
 /// Lets planes reach on; reuses its memory.
 #[derive(Debug, Default)]
-pub(super) struct Reach {
+pub(super) struct Flood {
     /// For each band.
     works: Vec<Work>,
 }
@@ -33,31 +33,31 @@ struct Work {
     touching: Touching,
 }
 
-impl Reach {
+impl Flood {
     /// Lets planes reach on, though not into curved regions, and lists the regions that they touch there: band by band on as
     /// many threads, and then over the bands' edges.
-    pub(super) fn reach(
+    pub(super) fn flood(
         &mut self,
-        field: &Field,
+        affine: &AffineMap,
         planes: &Planes<'_>,
         seams: &Boundary,
         bands: &[Range<usize>],
         image: &mut [u16],
         threads: usize,
     ) {
-        let &Field { width, height, stride, .. } = field;
+        let &AffineMap { width, height, stride, .. } = affine;
         self.works.resize_with(bands.len(), Work::default);
-        in_bands(bands, &mut self.works, [(&mut *image, ROWS * stride)], threads, |band, work, [image]| {
+        for_each_band(bands, &mut self.works, [(&mut *image, ROWS * stride)], threads, |band, work, [image]| {
             reserve_to(&mut work.queue, image.len());
             work.touching.prepare(4 * image.len());
             let rows = finer(band, ROWS);
             let rows = rows.start..rows.end.min(height);
-            let mut area = Area { field, planes, rows: rows.clone(), image, work };
+            let mut area = Area { affine, planes, rows: rows.clone(), image, work };
             seams.each_open(rows, |place| area.ask_around(place));
         });
         for (band, work) in bands.iter().zip(&mut self.works).skip(1) {
             let edge = finer(band, ROWS).start;
-            let mut area = Area { field, planes, rows: 0..height, image, work };
+            let mut area = Area { affine, planes, rows: 0..height, image, work };
             (edge - 1..edge + 1).for_each(|v| (0..width).for_each(|u| area.ask_around([u, v])));
         }
     }
@@ -70,7 +70,7 @@ impl Reach {
 
 /// Rows over which planes reach on; there is nothing beyond them.
 struct Area<'a> {
-    field: &'a Field,
+    affine: &'a AffineMap,
     planes: &'a Planes<'a>,
     rows: Range<usize>,
     image: &'a mut [u16],
@@ -91,7 +91,7 @@ impl Area<'_> {
     #[inline(always)]
     fn ask(&mut self, place: [usize; 2]) {
         let at = self.at(place);
-        let q = self.field.q[place[1] * self.field.stride + place[0]];
+        let q = self.affine.q[place[1] * self.affine.stride + place[0]];
         if self.image[at] > 0 || !q.is_finite() {
             return;
         }
@@ -103,7 +103,7 @@ impl Area<'_> {
                 let region = self.planes.region(u32::from(label) - 1);
                 let on_plane = region.at(u, v);
                 let off = (q - on_plane).powi(2);
-                if off < best && off <= self.planes.reach(region, on_plane) {
+                if off < best && off <= self.planes.inlier_threshold_squared(region, on_plane) {
                     (own, best) = (label, off);
                 }
             }
@@ -118,19 +118,19 @@ impl Area<'_> {
     /// Where a pixel stands in the image.
     #[inline(always)]
     fn at(&self, [u, v]: [usize; 2]) -> usize {
-        (v - self.rows.start) * self.field.stride + u
+        (v - self.rows.start) * self.affine.stride + u
     }
 
     /// The four neighbours of a pixel; at the edge itself in place of those that are missing.
     #[inline(always)]
     fn neighbours(&self, [u, v]: [usize; 2]) -> [[usize; 2]; 4] {
-        let [right, below] = [(u + 1).min(self.field.width - 1), (v + 1).min(self.rows.end - 1)];
+        let [right, below] = [(u + 1).min(self.affine.width - 1), (v + 1).min(self.rows.end - 1)];
         [[u.saturating_sub(1), v], [right, v], [u, v.saturating_sub(1).max(self.rows.start)], [u, below]]
     }
 }
 
 /// Pixels that get their labels together.
-const ABREAST: usize = 32;
+const LANES: usize = 32;
 /// Slots of the table of pairs that were just met; a power of two.
 const RECENT: usize = 256;
 
@@ -181,7 +181,7 @@ impl Contacts {
     pub(super) fn list(&mut self, seams: &Boundary, image: &[u16], threads: usize) {
         // A pixel makes two pairs, with its left and its upper neighbour.
         let per_row = 2 * image.len() / seams.rows();
-        in_rows(threads, seams.rows(), ROWS_AT_A_TIME, &mut self.parts, |part, rows| {
+        for_row_blocks(threads, seams.rows(), ROWS_AT_A_TIME, &mut self.parts, |part, rows| {
             part.prepare(rows.len() * per_row);
             seams.each(rows, image, |a, b| part.touch(a, b));
         });
@@ -220,14 +220,14 @@ impl Contacts {
         }
         if any {
             (0..into.len()).for_each(|label| into[label] = find(into, label as u16));
-            let relabel = |groups: &mut [[u16; ABREAST]]| {
+            let relabel = |groups: &mut [[u16; LANES]]| {
                 vectorised(
                     #[inline(always)]
                     || relabel(groups, into),
                 );
             };
             // An image has whole groups.
-            in_parts(threads, image.as_chunks_mut().0, relabel, |(), ()| ());
+            map_reduce(threads, image.as_chunks_mut().0, relabel, |(), ()| ());
         }
     }
 
@@ -239,15 +239,15 @@ impl Contacts {
 
 /// Gives every pixel the label that its own has become; [`BENT`] stays.
 #[inline(always)]
-fn relabel(groups: &mut [[u16; ABREAST]], into: &[u16]) {
+fn relabel(groups: &mut [[u16; LANES]], into: &[u16]) {
     let now = |label: u16| into.get(usize::from(label)).map_or(label, |&into| into);
     for group in groups {
         // Most groups are of one region, and most regions stay what they are.
         let first = group[0];
-        if *group != [first; ABREAST] {
+        if *group != [first; LANES] {
             group.iter_mut().for_each(|label| *label = now(*label));
         } else if now(first) != first {
-            *group = [now(first); ABREAST];
+            *group = [now(first); LANES];
         }
     }
 }

@@ -3,7 +3,7 @@
 //! A cell knows how its pixels lie, its least-squares plane and the squared residuals about it, which give the
 //! residuals about any other plane without a look at a pixel.
 
-use super::layout::Field;
+use super::layout::AffineMap;
 use super::thresholds::{FLAT, JOIN, limit};
 use crate::statistics::least_squares::Moments;
 use crate::util::parallel::Rows;
@@ -30,17 +30,17 @@ pub(super) struct Sums<T> {
     /// Squared residuals about it; infinite if it has none.
     pub(super) squares: T,
     /// What it adds to the squares of one of the cell's parts, at most.
-    pub(super) strain: T,
+    pub(super) child_misfit: T,
 }
 
 impl<T> Sums<T> {
-    pub(super) fn of([n, u, v, uu, uv, vv, a, b, c, squares, strain]: [T; 11]) -> Self {
-        Sums { n, u, v, uu, uv, vv, a, b, c, squares, strain }
+    pub(super) fn of([n, u, v, uu, uv, vv, a, b, c, squares, child_misfit]: [T; 11]) -> Self {
+        Sums { n, u, v, uu, uv, vv, a, b, c, squares, child_misfit }
     }
 
     pub(super) fn each(&mut self) -> [&mut T; 11] {
-        let Sums { n, u, v, uu, uv, vv, a, b, c, squares, strain } = self;
-        [n, u, v, uu, uv, vv, a, b, c, squares, strain]
+        let Sums { n, u, v, uu, uv, vv, a, b, c, squares, child_misfit } = self;
+        [n, u, v, uu, uv, vv, a, b, c, squares, child_misfit]
     }
 }
 
@@ -143,8 +143,8 @@ impl Grid {
         }
     }
 
-    pub(super) fn prepare(&mut self, field: &Field) {
-        (self.columns, self.rows) = (field.stride / self.side, field.rows / self.side);
+    pub(super) fn prepare(&mut self, affine: &AffineMap) {
+        (self.columns, self.rows) = (affine.stride / self.side, affine.rows / self.side);
         let cells = self.columns * self.rows;
         for numbers in self.sums.each().into_iter().chain([&mut self.variance, &mut self.smooth, &mut self.roughness]) {
             numbers.resize(cells, 0.0);
@@ -280,7 +280,7 @@ impl<'a> Rows for GridRows<'a> {
         self.rows
     }
 
-    fn cut(mut self, rows: usize) -> (Self, Self) {
+    fn split_rows(mut self, rows: usize) -> (Self, Self) {
         let columns = self.columns;
         let take = |numbers: &mut &'a mut [f32]| -> &'a mut [f32] {
             numbers.split_off_mut(..rows * columns).expect("so many rows")
@@ -322,14 +322,14 @@ impl GridRows<'_> {
     /// Roughness from each cell's own residuals, and from those of its parts.
     #[inline(always)]
     pub(super) fn hold_against_noise(&mut self, parts: Option<&GridRows<'_>>, inlier_threshold: f32) {
-        let GridRows { sums: Sums { n, squares, strain, .. }, variance, smooth, roughness, columns, .. } = self;
-        let numbers = n.iter().zip(&**squares).zip(&**strain).zip(&**variance).zip(&**smooth);
-        for (((((&n, &squares), &strain), &variance), &smooth), roughness) in numbers.zip(&mut **roughness) {
+        let GridRows { sums: Sums { n, squares, child_misfit, .. }, variance, smooth, roughness, columns, .. } = self;
+        let numbers = n.iter().zip(&**squares).zip(&**child_misfit).zip(&**variance).zip(&**smooth);
+        for (((((&n, &squares), &child_misfit), &variance), &smooth), roughness) in numbers.zip(&mut **roughness) {
             let free = larger(n - 3.0, 1.0);
             let bend = if parts.is_some() { FLAT.smooth as f32 * n * smooth } else { 0.0 };
             let own = squares * n / (free * (limit(n, inlier_threshold) * variance + bend));
             let most = FLAT.variances as f32 * variance + FLAT.smooth as f32 * n / 4.0 * smooth;
-            *roughness = larger(own, strain / most);
+            *roughness = larger(own, child_misfit / most);
         }
         if let Some(parts) = parts {
             for (row, roughness) in roughness.chunks_exact_mut(*columns).enumerate() {

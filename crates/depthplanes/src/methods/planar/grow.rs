@@ -8,8 +8,8 @@
 //! regions that a band's edge cuts are merged as any others are (stage "merge").
 
 use super::grid::{Cell, Grid, NONE, Place};
-use super::layout::{LANES, LEVELS, SIDE, in_bands};
-use super::pyramid::{Pyramid, hand_down};
+use super::layout::{LANES, LEVELS, SIDE, for_each_band};
+use super::pyramid::{Pyramid, propagate_down};
 use super::region::Region;
 use crate::util::memory::reserve_to;
 use crate::util::simd::vectorised;
@@ -21,8 +21,6 @@ use std::ops::Range;
 const OF_TILE: f32 = 0.5;
 /// Fewest pixels of a larger cell that starts or joins one: half of a cell may lie in a gap that it would reach over.
 const OF_CELL: f32 = 0.75;
-/// Cells of a row that are looked at together; a row has a multiple of them.
-const ABREAST: usize = LANES;
 
 /// The regions of a map; reuses its memory.
 #[derive(Debug, Default)]
@@ -61,7 +59,7 @@ impl Regions {
             level += 1;
             (&mut region[..], pyramid.per_row(level - 1))
         });
-        in_bands(&pyramid.bands, &mut self.growths, wholes, threads, |band, growth, regions| {
+        for_each_band(&pyramid.bands, &mut self.growths, wholes, threads, |band, growth, regions| {
             vectorised(
                 #[inline(always)]
                 || growth.grow(pyramid, band, regions, inlier_threshold),
@@ -105,7 +103,7 @@ impl Growth {
             let (grid, rows) = (&pyramid.grids[level], pyramid.rows_of(band, level));
             let (finer, coarser) = regions.split_at_mut(level + 1);
             if let [coarser, ..] = coarser {
-                hand_down(grid, rows.start, coarser, finer[level]);
+                propagate_down(grid, rows.start, coarser, finer[level]);
             }
             let mut area = Area { grid, inlier_threshold, rows, region: &mut *finer[level], all, work };
             area.open();
@@ -148,7 +146,7 @@ impl Area<'_> {
             return;
         }
         for row in self.rows.clone() {
-            for first in (0..self.grid.columns).step_by(ABREAST) {
+            for first in (0..self.grid.columns).step_by(LANES) {
                 let open = self.open_from(Place::new(first, row));
                 let mut rest = if open == 0 { 0 } else { open & self.find_beside(Place::new(first, row)) };
                 while rest != 0 {
@@ -170,7 +168,7 @@ impl Area<'_> {
         let least = fewest(grid);
         self.work.seeds.clear();
         for row in self.rows.clone() {
-            for first in (0..grid.columns).step_by(ABREAST) {
+            for first in (0..grid.columns).step_by(LANES) {
                 let mut rest = self.open_from(Place::new(first, row));
                 while rest != 0 {
                     let at = row * grid.columns + first + rest.trailing_zeros() as usize / 8;
@@ -247,12 +245,12 @@ impl Area<'_> {
         let (at, columns) = (self.at(place), self.grid.columns);
         let is_taken = |at: usize| u64::from(self.region.get(at).is_some_and(|&id| id != NONE));
         let are_taken = |at: usize| {
-            let ids = self.region.get(at..).and_then(|from| from.first_chunk::<ABREAST>());
+            let ids = self.region.get(at..).and_then(|from| from.first_chunk::<LANES>());
             ids.map_or(0, |ids| u64::from_le_bytes(from_fn(|i| u8::from(ids[i] != NONE))))
         };
         let own = are_taken(at);
         let left = own << 8 | is_taken(at.wrapping_sub(1));
-        let right = own >> 8 | is_taken(at + ABREAST) << 56;
+        let right = own >> 8 | is_taken(at + LANES) << 56;
         left | right | are_taken(at.wrapping_sub(columns)) | are_taken(at + columns)
     }
 

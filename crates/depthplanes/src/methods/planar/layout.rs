@@ -1,13 +1,13 @@
 //! How a map lies in memory: q in rows with room for whole cells, tiles and larger cells, and the bands of a large map.
 //!
-//! In: a map and its space. Out: q for every pixel in rows of [`Field::stride`], with room for whole
-//! blocks of tiles around it, so that no later stage has to mind the map's edge; and ranges of rows ([`cut`]) that several
+//! In: a map and its space. Out: q for every pixel in rows of [`AffineMap::stride`], with room for whole
+//! blocks of tiles around it, so that no later stage has to mind the map's edge; and ranges of rows ([`cut_bands`]) that several
 //! stages work on as if each were a map, and then along their edges. The map's size alone decides on these, so that the
 //! answer is the same on any number of threads.
 
 use crate::map::{DepthView, Pixel, Validity};
 use crate::noise::{LARGEST_Q, Space};
-use crate::util::parallel::{Rows, in_parts};
+use crate::util::parallel::{Rows, map_reduce};
 use std::ops::Range;
 
 /// Columns and rows of a tile. The smallest plane has to hold a few; a tile's own plane should still
@@ -24,7 +24,7 @@ pub(super) const ROWS: usize = SIDE << (LEVELS - 1);
 
 /// A map in q; NaN where nothing was measured, where q is more than [`LARGEST_Q`], and beyond the map's edge.
 #[derive(Debug, Default)]
-pub(super) struct Field {
+pub(super) struct AffineMap {
     pub(super) width: usize,
     pub(super) height: usize,
     /// Columns, a multiple of [`COLUMNS`].
@@ -35,7 +35,7 @@ pub(super) struct Field {
     pub(super) valid_pixels: usize,
 }
 
-impl Field {
+impl AffineMap {
     /// Makes room for a map.
     pub(super) fn prepare<T: Pixel>(&mut self, map: &DepthView<'_, T>) {
         let (width, height) = (map.width(), map.height());
@@ -93,7 +93,7 @@ const BAND_PIXELS: usize = 1 << 19;
 const MOST_BANDS: usize = 8;
 
 /// Cuts so many rows of a map of so many pixels into bands of nearly as many.
-pub(super) fn cut(rows: usize, pixels: usize) -> impl Iterator<Item = Range<usize>> {
+pub(super) fn cut_bands(rows: usize, pixels: usize) -> impl Iterator<Item = Range<usize>> {
     let per_band = rows.div_ceil(pixels.div_ceil(BAND_PIXELS).min(MOST_BANDS));
     (0..rows).step_by(per_band).map(move |first| first..(first + per_band).min(rows))
 }
@@ -105,7 +105,7 @@ pub(super) fn finer(band: &Range<usize>, times: usize) -> Range<usize> {
 
 /// Does the work on each band, on as many threads. It is handed the band, the memory for it, and its part of each of the
 /// `wholes`; beside each of these stands how much of it there is for a row of the coarsest cells.
-pub(super) fn in_bands<M: Send, T: Send, const N: usize>(
+pub(super) fn for_each_band<M: Send, T: Send, const N: usize>(
     bands: &[Range<usize>],
     memories: &mut [M],
     wholes: [(&mut [T], usize); N],
@@ -117,7 +117,7 @@ pub(super) fn in_bands<M: Send, T: Send, const N: usize>(
             work(band, memory, wholes.each_mut().map(|whole| split_off(whole, band.len())));
         }
     };
-    in_parts(threads, Bands { bands, memories, wholes }, work_on, |(), ()| ());
+    map_reduce(threads, Bands { bands, memories, wholes }, work_on, |(), ()| ());
 }
 
 /// What there is for the first rows; the rest is left.
@@ -137,7 +137,7 @@ impl<M: Send, T: Send, const N: usize> Rows for Bands<'_, M, T, N> {
         self.bands.len()
     }
 
-    fn cut(self, count: usize) -> (Self, Self) {
+    fn split_rows(self, count: usize) -> (Self, Self) {
         let Bands { bands, memories, mut wholes } = self;
         let (bands, memories) = (bands.split_at(count), memories.split_at_mut(count));
         let rows = bands.1[0].start - bands.0[0].start;

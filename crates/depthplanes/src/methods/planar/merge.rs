@@ -1,6 +1,6 @@
 //! Stage "merge": regions that one plane explains as well as two become one.
 //!
-//! In: regions as they grew, and the tiles' region numbers. Out: fewer regions, and the pairs that lie side
+//! In: regions as they grew, and the tiles' region numbers. Out: fewer regions, and the edges that lie side
 //! by side with the place where they touch.
 
 use super::grid::{Grid, NONE};
@@ -12,7 +12,7 @@ use crate::limits::MAX_PLANES;
 use crate::methods::rays::{Rays, dot};
 use crate::statistics::least_squares::Moments;
 use crate::util::memory::reserve_to;
-use crate::util::parallel::{in_parts, in_rows};
+use crate::util::parallel::{for_row_blocks, map_reduce};
 use crate::util::simd::vectorised;
 use crate::util::switches::is_on;
 use crate::util::union_find::find;
@@ -20,7 +20,7 @@ use std::ops::Range;
 
 /// Two regions with tiles side by side, or with one tile of no region between.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pair {
+pub(super) struct Edge {
     /// The smaller number and the larger.
     pub(super) ids: [u32; 2],
     /// Places where they touch.
@@ -31,24 +31,24 @@ pub(super) struct Pair {
     cost: f64,
 }
 
-impl Pair {
+impl Edge {
     /// Mean (u, v) of the places where they touch.
     pub(super) fn middle(&self) -> [f64; 2] {
         self.at.map(|sum| sum / self.contacts)
     }
 
-    fn add(&mut self, other: &Pair) {
+    fn add(&mut self, other: &Edge) {
         self.contacts += other.contacts;
         self.at = [0, 1].map(|i| self.at[i] + other.at[i]);
     }
 }
 
-/// Where a pair stands in the table of recent ones.
+/// Where an edge stands in the table of recent ones.
 fn slot([a, b]: [u32; 2]) -> usize {
     (a.wrapping_mul(0x9e37_79b1) ^ b.wrapping_mul(0x85eb_ca77)) as usize >> 7 & (RECENT - 1)
 }
 
-/// Slots of the table of pairs that were just met; a power of two.
+/// Slots of the table of edges that were just met; a power of two.
 const RECENT: usize = 1024;
 /// Pairs that are weighed sooner than a second thread wakes up.
 const FEW_PAIRS: usize = 512;
@@ -58,21 +58,21 @@ const ROWS: usize = 64;
 /// Merges regions; reuses its memory.
 #[derive(Debug, Default)]
 pub(super) struct Merger {
-    pub(super) pairs: Vec<Pair>,
+    pub(super) edges: Vec<Edge>,
     /// Those of which a region has just become another.
-    renamed: Vec<Pair>,
-    parts: Vec<Part>,
+    renamed: Vec<Edge>,
+    parts: Vec<RowEdges>,
     /// For each region the one that it becomes.
     into: Vec<u32>,
     has_changed: Vec<bool>,
     order: Vec<u32>,
 }
 
-/// The pairs in some rows of tiles.
+/// The edges in some rows of tiles.
 #[derive(Debug, Default)]
-struct Part {
-    pairs: Vec<Pair>,
-    /// For pairs by hash, where the pair stands that was last met there.
+struct RowEdges {
+    edges: Vec<Edge>,
+    /// For edges by hash, where the edge stands that was last met there.
     recent: Vec<u32>,
 }
 
@@ -80,7 +80,7 @@ impl Merger {
     /// Joins neighbouring regions that one plane explains as well as two, the most alike first. Those that
     /// became part of another are still listed. On as many threads.
     pub(super) fn merge(&mut self, grid: &Grid, regions: &mut Regions, rays: &Rays, threads: usize) {
-        reserve_to(&mut self.pairs, 4 * grid.len());
+        reserve_to(&mut self.edges, 4 * grid.len());
         reserve_to(&mut self.renamed, 4 * grid.len());
         for memory in [&mut self.into, &mut self.order] {
             reserve_to(memory, 4 * grid.len());
@@ -91,11 +91,11 @@ impl Merger {
         self.merge_listed(&mut regions.all, rays, threads);
     }
 
-    /// Joins regions of the listed pairs.
+    /// Joins regions of the listed edges.
     pub(super) fn merge_listed(&mut self, all: &mut [Region], rays: &Rays, threads: usize) {
-        weigh(&mut self.pairs, all, rays, threads);
+        weigh(&mut self.edges, all, rays, threads);
         while self.merge_best(all, rays, threads) {}
-        self.pairs.sort_unstable_by_key(key);
+        self.edges.sort_unstable_by_key(key);
     }
 
     /// Leaves out regions of fewer than `least` pixels, and those that became part of another.
@@ -125,35 +125,35 @@ impl Merger {
         find(&self.into, id)
     }
 
-    /// Lists the pairs of regions side by side, on as many threads.
+    /// Lists the edges of the region adjacency graph, on as many threads.
     fn list_pairs(&mut self, grid: &Grid, threads: usize) {
-        let Merger { pairs, parts, .. } = self;
-        in_rows(threads, grid.rows, ROWS, parts, |part, rows| {
+        let Merger { edges, parts, .. } = self;
+        for_row_blocks(threads, grid.rows, ROWS, parts, |part, rows| {
             vectorised(
                 #[inline(always)]
                 || part.list(grid, rows),
             );
         });
-        parts.iter().for_each(|part| pairs.extend(&part.pairs));
-        unite(pairs);
+        parts.iter().for_each(|part| edges.extend(&part.edges));
+        unite(edges);
     }
 
-    /// Merges the pairs that cost least, each region once; whether there were any.
+    /// Merges the edges that cost least, each region once; whether there were any.
     fn merge_best(&mut self, all: &mut [Region], rays: &Rays, threads: usize) -> bool {
-        let Merger { pairs, renamed, into, has_changed, order, .. } = self;
+        let Merger { edges, renamed, into, has_changed, order, .. } = self;
         order.clear();
-        order.extend((0..pairs.len() as u32).filter(|&at| pairs[at as usize].cost.is_finite()));
+        order.extend((0..edges.len() as u32).filter(|&at| edges[at as usize].cost.is_finite()));
         if order.is_empty() {
             return false;
         }
         order.sort_unstable_by(|&x, &y| {
-            let [x, y] = [x, y].map(|at| &pairs[at as usize]);
+            let [x, y] = [x, y].map(|at| &edges[at as usize]);
             x.cost.total_cmp(&y.cost).then(key(x).cmp(&key(y)))
         });
         has_changed.clear();
         has_changed.resize(all.len(), false);
         for &at in order.iter() {
-            let [a, b] = pairs[at as usize].ids.map(|id| id as usize);
+            let [a, b] = edges[at as usize].ids.map(|id| id as usize);
             if !has_changed[a] && !has_changed[b] {
                 let other = all[b];
                 all[a].absorb(&other);
@@ -163,15 +163,15 @@ impl Merger {
             }
         }
         renamed.clear();
-        renamed.extend(pairs.extract_if(.., |pair| pair.ids.iter().any(|&id| has_changed[id as usize])));
-        for pair in renamed.iter_mut() {
-            let [a, b] = pair.ids.map(|id| into[id as usize]);
-            pair.ids = [a.min(b), a.max(b)];
+        renamed.extend(edges.extract_if(.., |edge| edge.ids.iter().any(|&id| has_changed[id as usize])));
+        for edge in renamed.iter_mut() {
+            let [a, b] = edge.ids.map(|id| into[id as usize]);
+            edge.ids = [a.min(b), a.max(b)];
         }
-        renamed.retain(|pair| pair.ids[0] != pair.ids[1]);
+        renamed.retain(|edge| edge.ids[0] != edge.ids[1]);
         unite(renamed);
         weigh(renamed, all, rays, threads);
-        pairs.append(renamed);
+        edges.append(renamed);
         true
     }
 
@@ -183,7 +183,7 @@ impl Merger {
         threads: usize,
         mut goes: impl FnMut(&Region) -> bool,
     ) {
-        let Merger { pairs, into, order: number, .. } = self;
+        let Merger { edges, into, order: number, .. } = self;
         number.clear();
         let mut kept = 0;
         number.extend(regions.all.iter().enumerate().map(|(id, region)| {
@@ -191,15 +191,15 @@ impl Merger {
             kept += u32::from(is_kept);
             if is_kept { kept - 1 } else { NONE }
         }));
-        pairs.iter_mut().for_each(|pair| pair.ids = pair.ids.map(|id| number[id as usize]));
-        pairs.retain(|pair| !pair.ids.contains(&NONE));
+        edges.iter_mut().for_each(|edge| edge.ids = edge.ids.map(|id| number[id as usize]));
+        edges.retain(|edge| !edge.ids.contains(&NONE));
         // A region is merged into one before it, whose new number is known by then.
         for id in 0..into.len() {
             into[id] = if into[id] as usize == id { number[id] } else { into[into[id] as usize] };
         }
         let renumber =
             |ids: &mut [u32]| ids.iter_mut().for_each(|id| *id = into.get(*id as usize).map_or(NONE, |&id| id));
-        in_parts(threads, &mut grid.region[..], renumber, |(), ()| ());
+        map_reduce(threads, &mut grid.region[..], renumber, |(), ()| ());
         let mut numbers = number.iter();
         regions.all.retain(|_| numbers.next() != Some(&NONE));
         into.clear();
@@ -207,26 +207,26 @@ impl Merger {
     }
 }
 
-impl Part {
-    /// Lists the pairs that a tile of some rows makes with the next to its right or below.
+impl RowEdges {
+    /// Lists the edges that a tile of some rows makes with the next to its right or below.
     #[inline(always)]
     fn list(&mut self, grid: &Grid, of: Range<usize>) {
-        let Part { pairs, recent } = self;
+        let RowEdges { edges, recent } = self;
         let Grid { columns, rows, region, .. } = grid;
-        reserve_to(pairs, 2 * of.len() * columns);
+        reserve_to(edges, 2 * of.len() * columns);
         recent.clear();
         recent.resize(RECENT, NONE);
         let side = grid.side as f64;
         let mut touch = |a: u32, b: u32, column: usize, row: usize| {
             let ids = [a.min(b), a.max(b)];
             let at = [column, row].map(|place| (place as f64 + 0.5) * side);
-            let met = Pair { ids, contacts: 1.0, at, cost: f64::NAN };
+            let met = Edge { ids, contacts: 1.0, at, cost: f64::NAN };
             let recent = &mut recent[slot(ids)];
-            match pairs.get_mut(*recent as usize) {
-                Some(pair) if pair.ids == ids => pair.add(&met),
+            match edges.get_mut(*recent as usize) {
+                Some(edge) if edge.ids == ids => edge.add(&met),
                 _ => {
-                    *recent = pairs.len() as u32;
-                    pairs.push(met);
+                    *recent = edges.len() as u32;
+                    edges.push(met);
                 }
             }
         };
@@ -243,7 +243,7 @@ impl Part {
             let own = row * columns;
             let below = own + if row + 1 < *rows { *columns } else { 0 };
             let (here, below) = (&region[own..own + columns], &region[below..below + columns]);
-            for first in (0..*columns).step_by(ABREAST) {
+            for first in (0..*columns).step_by(LANES) {
                 let [at_right, at_bottom] = find_ends(here, below, first);
                 each_one(at_right, |i| {
                     let column = first + i;
@@ -256,21 +256,21 @@ impl Part {
 }
 
 /// Tiles of a row that are looked at together; a row has a multiple of them.
-const ABREAST: usize = 16;
+const LANES: usize = 16;
 
 /// For each tile from `first` on 1 if it has a region and the one to its right another or none, else 0; the same below.
 #[inline(always)]
-fn find_ends(here: &[u32], below: &[u32], first: usize) -> [[u8; ABREAST]; 2] {
-    let part = |row: &[u32], at: usize| *row[at..].first_chunk::<ABREAST>().expect("rows of whole parts");
+fn find_ends(here: &[u32], below: &[u32], first: usize) -> [[u8; LANES]; 2] {
+    let part = |row: &[u32], at: usize| *row[at..].first_chunk::<LANES>().expect("rows of whole parts");
     let (own, below) = (part(here, first), part(below, first));
-    let right = here.get(first + 1..).and_then(|row| row.first_chunk::<ABREAST>()).copied();
-    let right = right.unwrap_or_else(|| std::array::from_fn(|i| own[(i + 1).min(ABREAST - 1)]));
+    let right = here.get(first + 1..).and_then(|row| row.first_chunk::<LANES>()).copied();
+    let right = right.unwrap_or_else(|| std::array::from_fn(|i| own[(i + 1).min(LANES - 1)]));
     [right, below].map(|beside| std::array::from_fn(|i| u8::from((own[i] != NONE) & (own[i] != beside[i]))))
 }
 
 /// Calls `visit` with the place of each that is 1.
 #[inline(always)]
-fn each_one(ones: [u8; ABREAST], mut visit: impl FnMut(usize)) {
+fn each_one(ones: [u8; LANES], mut visit: impl FnMut(usize)) {
     let mut rest = u128::from_le_bytes(ones);
     while rest != 0 {
         visit(rest.trailing_zeros() as usize / 8);
@@ -278,39 +278,39 @@ fn each_one(ones: [u8; ABREAST], mut visit: impl FnMut(usize)) {
     }
 }
 
-/// What pairs are sorted by.
-fn key(&Pair { ids: [a, b], .. }: &Pair) -> u64 {
+/// What edges are sorted by.
+fn key(&Edge { ids: [a, b], .. }: &Edge) -> u64 {
     u64::from(a) << 32 | u64::from(b)
 }
 
-/// Finds what merging each pair costs, on as many threads.
-fn weigh(pairs: &mut [Pair], all: &[Region], rays: &Rays, threads: usize) {
-    let weigh = |pairs: &mut [Pair]| {
-        for pair in pairs {
-            let [a, b] = pair.ids.map(|id| &all[id as usize]);
+/// Finds what merging along each edge costs, on as many threads.
+fn weigh(edges: &mut [Edge], all: &[Region], rays: &Rays, threads: usize) {
+    let weigh = |edges: &mut [Edge]| {
+        for edge in edges {
+            let [a, b] = edge.ids.map(|id| &all[id as usize]);
             let cost = merge_cost(a, b);
             let bowed = BOWED_MERGE * a.excess().max(b.excess()).clamp(1.0, BOWED_EXCESS);
-            let is_one = cost <= 1.0 || (cost <= bowed && is_on("bowed-merge") && goes_on(a, b, pair.middle(), rays));
-            pair.cost = if is_one { cost } else { f64::INFINITY };
+            let is_one = cost <= 1.0 || (cost <= bowed && is_on("bowed-merge") && goes_on(a, b, edge.middle(), rays));
+            edge.cost = if is_one { cost } else { f64::INFINITY };
         }
     };
-    let weigh = |pairs: &mut [Pair]| {
+    let weigh = |edges: &mut [Edge]| {
         vectorised(
             #[inline(always)]
-            || weigh(pairs),
+            || weigh(edges),
         )
     };
-    let threads = if pairs.len() < FEW_PAIRS { 1 } else { threads };
-    in_parts(threads, pairs, weigh, |(), ()| ());
+    let threads = if edges.len() < FEW_PAIRS { 1 } else { threads };
+    map_reduce(threads, edges, weigh, |(), ()| ());
 }
 
-/// Makes one pair of those that are the same.
-fn unite(pairs: &mut Vec<Pair>) {
-    pairs.sort_unstable_by_key(key);
-    pairs.dedup_by(|next, pair| {
-        let same = next.ids == pair.ids;
+/// Makes one edge of those that are the same.
+fn unite(edges: &mut Vec<Edge>) {
+    edges.sort_unstable_by_key(key);
+    edges.dedup_by(|next, edge| {
+        let same = next.ids == edge.ids;
         if same {
-            pair.add(next);
+            edge.add(next);
         }
         same
     });

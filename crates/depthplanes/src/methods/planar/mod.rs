@@ -28,7 +28,7 @@ mod thresholds;
 mod tiles;
 mod trace;
 
-use super::finish::STAGES;
+use super::extraction::STAGES;
 use super::method::sealed::Sealed;
 use super::method::{Configured, Job, Method, MethodInfo, Parameters};
 use super::parameter::check;

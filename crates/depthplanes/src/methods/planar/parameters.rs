@@ -1,7 +1,7 @@
 //! The parameters of `planar`, and what they say of the noise.
 
 use super::region::{Planes, Region};
-use crate::methods::finish::MIN;
+use crate::methods::extraction::MIN;
 use crate::methods::noise::{NOISE, NOISE_GROWTH, NOISE_SCALE, SMOOTH_NOISE, SMOOTH_NOISE_GROWTH, stated};
 use crate::methods::parameter::{Param, ParamKind, defaults, setters};
 use crate::noise::scales::{Errors, RAY};

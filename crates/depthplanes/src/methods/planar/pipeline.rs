@@ -2,60 +2,60 @@
 
 use super::assign::assign;
 use super::curvature::Shown;
-use super::curved::{Facets, Optics};
+use super::curved::{CurvatureTest, Sensing};
 use super::curved_regions::{curved_of, join_facets};
-use super::extend::{Contacts, Reach};
+use super::extend::{Contacts, Flood};
 use super::grow::Regions;
-use super::layout::Field;
+use super::layout::AffineMap;
 use super::merge::Merger;
 use super::parameters::Planar;
 use super::pyramid::Pyramid;
-use super::redundant::Explainer;
+use super::redundant::Redundancy;
 use super::refine::Refiner;
 use super::region::{Region, find_boxes, of_image};
 use super::thresholds::SHOWN_MOST;
 use crate::camera::Measure;
-use crate::components::Grouper;
+use crate::components::ConnectedComponents;
 use crate::components::boundary::Boundary;
 use crate::components::gaps::{Bridge, Measured};
 use crate::detection::{Curved, Detection};
 use crate::error::Result;
 use crate::map::{DepthView, Pixel};
-use crate::methods::finish::{Finisher, Wanted};
+use crate::methods::extraction::{Extraction, Wanted};
 use crate::methods::method::Job;
 use crate::methods::rays::Rays;
 use crate::noise::scales::{Errors, Scales};
 use crate::noise::{NoiseModel, Rounding, RoundingFinder, Space};
-use crate::util::parallel::side_by_side;
+use crate::util::parallel::join;
 use crate::util::switches::is_on;
 
 /// The method with its memory.
 #[derive(Default)]
 pub(super) struct Runner {
     pub(super) params: Planar,
-    pub(super) field: Field,
+    pub(super) affine: AffineMap,
     pub(super) pyramid: Pyramid,
     pub(super) rounding: RoundingFinder,
     pub(super) scales: Scales,
     pub(super) regions: Regions,
     pub(super) refiner: Refiner,
     pub(super) merger: Merger,
-    pub(super) facets: Facets,
+    pub(super) curvature: CurvatureTest,
     pub(super) shown: Shown,
-    pub(super) explainer: Explainer,
+    pub(super) redundancy: Redundancy,
     pub(super) image: Vec<u16>,
     pub(super) boundary: Boundary,
-    pub(super) reach: Reach,
+    pub(super) flood: Flood,
     pub(super) contacts: Contacts,
     /// For each region of tiles one that is a facet of the same surface, or itself.
     pub(super) facet_surfaces: Vec<u16>,
-    pub(super) finisher: Finisher,
+    pub(super) extraction: Extraction,
     pub(super) bridge: Bridge,
 }
 
-/// Places of a run where [`explain`] looks at what there is.
+/// Places of a run where `explain` looks at what there is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Moment {
+pub(super) enum Checkpoint {
     /// Regions have grown.
     Grown,
     /// Those that one plane explains are merged, none is dropped yet.
@@ -68,8 +68,8 @@ pub(super) enum Moment {
     Assigned,
 }
 
-/// Told of each moment of a run.
-pub(super) type Watch<'a> = dyn FnMut(Moment, &Runner, &NoiseModel) + 'a;
+/// Told of each checkpoint of a run.
+pub(super) type Observer<'a> = dyn FnMut(Checkpoint, &Runner, &NoiseModel) + 'a;
 
 impl Runner {
     /// The method: a line for each step, in the order of docs/planar.md.
@@ -78,7 +78,7 @@ impl Runner {
         map: DepthView<'_, T>,
         job: &mut Job<'_>,
         out: &mut Detection,
-        watch: &mut Watch<'_>,
+        observe: &mut Observer<'_>,
     ) -> Result<()> {
         if self.params.min_area > 0.0 {
             job.sensor.check_metric("min-area")?;
@@ -90,33 +90,33 @@ impl Runner {
         job.done("tiles");
 
         self.grow(&noise, threads);
-        self.settle(threads);
-        watch(Moment::Grown, self, &noise);
+        self.refine_borders(threads);
+        observe(Checkpoint::Grown, self, &noise);
         job.done("grow");
 
         self.merge(rays, threads);
-        watch(Moment::Merged, self, &noise);
+        observe(Checkpoint::Merged, self, &noise);
         self.drop_small(threads)?;
-        if let Some(times) = self.smooth_shown(wide, rays, job) {
+        if let Some(times) = self.smooth_times_shown(wide, rays, job) {
             noise = noise.with_smooth_times(times);
             self.merge_again(times, rays, threads)?;
-            watch(Moment::Shown, self, &noise);
+            observe(Checkpoint::Shown, self, &noise);
         }
         job.done("merge");
 
-        self.look_at_shapes(&noise, threads);
-        self.mark_curved(Optics { noise: &noise, rays }, threads);
-        watch(Moment::Judged, self, &noise);
-        self.drop_no_planes(job.sensor.measure, threads);
+        self.find_redundant(&noise, threads);
+        self.mark_curved(Sensing { noise: &noise, rays }, threads);
+        observe(Checkpoint::Judged, self, &noise);
+        self.drop_what_is_no_plane(job.sensor.measure, threads);
         job.done("judge");
 
         self.assign(&noise, false, threads);
-        self.reach(&noise, threads);
-        watch(Moment::Assigned, self, &noise);
-        self.join_contacts(threads);
+        self.flood(&noise, threads);
+        observe(Checkpoint::Assigned, self, &noise);
+        self.merge_touching(threads);
         job.done("assign");
 
-        self.finish(&map, &noise, job, out)?;
+        self.extract(&map, &noise, job, out)?;
         out.curved = match job.curved {
             true => Some(self.find_curved(&map, job, &noise, out.curved.take())?),
             false => None,
@@ -129,8 +129,8 @@ impl Runner {
 
     /// Tiles: the map in the space where planes are affine, and the sums of its cells.
     fn sum_tiles<T: Pixel>(&mut self, map: &DepthView<'_, T>, job: &Job<'_>) {
-        self.field.prepare(map);
-        self.pyramid.sum(map, Space::of(job.sensor.measure), job.threads, &mut self.field);
+        self.affine.prepare(map);
+        self.pyramid.sum(map, Space::of(job.sensor.measure), job.threads, &mut self.affine);
     }
 
     /// The noise to expect: stated, or as the cells show it; and how many times its smooth part the cells show with the
@@ -158,7 +158,7 @@ impl Runner {
     }
 
     /// Border tiles go to the region beside them that they suit better.
-    fn settle(&mut self, threads: usize) {
+    fn refine_borders(&mut self, threads: usize) {
         if is_on("settle") {
             self.refiner.refine(&mut self.pyramid, &mut self.regions.all, threads);
         }
@@ -176,11 +176,11 @@ impl Runner {
 
     /// How many times the smooth part that is expected of patches there is over long ways, if more than once: as cells
     /// show it or large regions.
-    fn smooth_shown(&mut self, wide: f64, rays: &Rays, job: &Job<'_>) -> Option<f64> {
-        let Runner { params, pyramid, regions, facets, shown, .. } = self;
-        pyramid.hand_up(job.threads);
-        facets.bows.measure(pyramid, &regions.all);
-        let by_regions = shown.times(&regions.all, &facets.bows, rays, pyramid.grids[0].len());
+    fn smooth_times_shown(&mut self, wide: f64, rays: &Rays, job: &Job<'_>) -> Option<f64> {
+        let Runner { params, pyramid, regions, curvature, shown, .. } = self;
+        pyramid.propagate_up(job.threads);
+        curvature.bows.measure(pyramid, &regions.all);
+        let by_regions = shown.times(&regions.all, &curvature.bows, rays, pyramid.grids[0].len());
         let by_regions = if is_on("shown") { params.noise_scale * by_regions } else { 0.0 };
         Some(wide.max(by_regions)).filter(|&times| times > 1.0)
     }
@@ -195,87 +195,91 @@ impl Runner {
     }
 
     /// Judge: how regions bow, and which of them larger ones beside them explain.
-    fn look_at_shapes(&mut self, noise: &NoiseModel, threads: usize) {
-        let Runner { params, field, pyramid, regions, merger, facets, explainer, .. } = self;
-        pyramid.hand_up(threads);
+    fn find_redundant(&mut self, noise: &NoiseModel, threads: usize) {
+        let Runner { params, affine, pyramid, regions, merger, curvature, redundancy, .. } = self;
+        pyramid.propagate_up(threads);
         let planes = params.planes(&regions.all, noise, false);
-        let (Facets { bows, boxes, .. }, tiles) = (&mut *facets, &pyramid.grids[0]);
-        side_by_side(
+        let (CurvatureTest { bows, boxes, .. }, tiles) = (&mut *curvature, &pyramid.grids[0]);
+        join(
             threads,
             || {
                 find_boxes(tiles, &regions.all, boxes);
-                explainer.find(field, tiles, &planes, &merger.pairs, boxes, threads);
+                redundancy.find(affine, tiles, &planes, &merger.edges, boxes, threads);
             },
             || bows.measure(pyramid, &regions.all),
         );
     }
 
     /// Marks the regions that are facets of curved surfaces.
-    fn mark_curved(&mut self, optics: Optics<'_>, threads: usize) {
-        let Runner { pyramid, regions, merger, facets, explainer, .. } = self;
-        facets.mark(pyramid, regions, &merger.pairs, &explainer.is_explained, optics, threads);
+    fn mark_curved(&mut self, sensing: Sensing<'_>, threads: usize) {
+        let Runner { pyramid, regions, merger, curvature, redundancy, .. } = self;
+        curvature.mark(pyramid, regions, &merger.edges, &redundancy.is_redundant, sensing, threads);
     }
 
     /// Leaves out regions that larger ones explain, and those that are seen edge-on.
-    fn drop_no_planes(&mut self, measure: Measure, threads: usize) {
-        let Runner { pyramid, regions, merger, explainer, .. } = self;
-        let mut explained = explainer.is_explained.iter();
-        let goes = |region: &Region| explained.next() == Some(&true) || region.is_edge_on(measure);
+    fn drop_what_is_no_plane(&mut self, measure: Measure, threads: usize) {
+        let Runner { pyramid, regions, merger, redundancy, .. } = self;
+        let mut redundant = redundancy.is_redundant.iter();
+        let goes = |region: &Region| redundant.next() == Some(&true) || region.is_edge_on(measure);
         merger.drop(&mut pyramid.grids[0], regions, threads, goes);
     }
 
     /// Assign: the region of every pixel: its plane, or its curved region; while planes are sought, all curved ones as
     /// [`super::region::BENT`].
     pub(super) fn assign(&mut self, noise: &NoiseModel, curved: bool, threads: usize) {
-        let Runner { params, field, pyramid, regions, image, .. } = self;
-        image.resize(field.q.len(), 0);
-        pyramid.hand_up(threads);
+        let Runner { params, affine, pyramid, regions, image, .. } = self;
+        image.resize(affine.q.len(), 0);
+        pyramid.propagate_up(threads);
         let [tiles, blocks, ..] = &pyramid.grids;
         let planes = params.planes(&regions.all, noise, curved);
-        assign(field, [tiles, blocks], &planes, threads, image);
+        assign(affine, [tiles, blocks], &planes, threads, image);
     }
 
     /// Planes reach on along strips that are too thin for a tile; those that touch are listed.
-    fn reach(&mut self, noise: &NoiseModel, threads: usize) {
-        let Runner { params, field, pyramid, regions, image, boundary, reach, contacts, .. } = self;
+    fn flood(&mut self, noise: &NoiseModel, threads: usize) {
+        let Runner { params, affine, pyramid, regions, image, boundary, flood, contacts, .. } = self;
         let planes = params.planes(&regions.all, noise, false);
-        boundary.find(image, field.stride, threads);
+        boundary.find(image, affine.stride, threads);
         contacts.list(boundary, image, threads);
         if is_on("reach") {
-            reach.reach(field, &planes, boundary, &pyramid.bands, image, threads);
+            flood.flood(affine, &planes, boundary, &pyramid.bands, image, threads);
         }
     }
 
     /// Regions whose pixels touch are merged as well.
-    fn join_contacts(&mut self, threads: usize) {
-        let Runner { regions, image, reach, contacts, .. } = self;
-        contacts.join(reach.touching(), &mut regions.all, image, threads);
+    fn merge_touching(&mut self, threads: usize) {
+        let Runner { regions, image, flood, contacts, .. } = self;
+        contacts.join(flood.touching(), &mut regions.all, image, threads);
     }
 
     /// Group, select, fit: connected pieces of one region, those that are large enough, and their planes.
-    fn finish<T: Pixel>(
+    fn extract<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
         noise: &NoiseModel,
         job: &mut Job<'_>,
         out: &mut Detection,
     ) -> Result<()> {
-        let Runner { params, field, image, finisher, bridge, .. } = self;
-        let ids = of_image(image, field)?;
-        let wanted =
-            Wanted { min: params.min, min_area: params.min_area, noise: Some(noise), valid_pixels: field.valid_pixels };
+        let Runner { params, affine, image, extraction, bridge, .. } = self;
+        let ids = of_image(image, affine)?;
+        let wanted = Wanted {
+            min: params.min,
+            min_area: params.min_area,
+            noise: Some(noise),
+            valid_pixels: affine.valid_pixels,
+        };
         let threads = job.threads;
-        let join = |grouper: &mut Grouper| {
+        let bridge_gaps = |components: &mut ConnectedComponents| {
             if is_on("pieces") {
                 bridge.join(
-                    Measured { numbers: &field.q, stride: field.stride, height: field.height },
+                    Measured { numbers: &affine.q, stride: affine.stride, height: affine.height },
                     image,
-                    grouper,
+                    components,
                     threads,
                 );
             }
         };
-        finisher.finish_united(map, &ids, &wanted, join, job, out)
+        extraction.extract_united(map, &ids, &wanted, bridge_gaps, job, out)
     }
 
     /// Curved regions, where they are wanted; overwrites the region image. `old`: memory to reuse.
@@ -287,8 +291,8 @@ impl Runner {
         old: Option<Curved>,
     ) -> Result<Curved> {
         self.assign(noise, true, job.threads);
-        let Runner { params, field, pyramid, regions, merger, image, finisher, facet_surfaces, .. } = self;
-        join_facets(&regions.all, &merger.pairs, noise, facet_surfaces, image, pyramid.grids[0].len());
-        curved_of(finisher, map, &of_image(image, field)?, params.min, job, old)
+        let Runner { params, affine, pyramid, regions, merger, image, extraction, facet_surfaces, .. } = self;
+        join_facets(&regions.all, &merger.edges, noise, facet_surfaces, image, pyramid.grids[0].len());
+        curved_of(extraction, map, &of_image(image, affine)?, params.min, job, old)
     }
 }

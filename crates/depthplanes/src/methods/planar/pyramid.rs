@@ -4,13 +4,13 @@
 //! cells of 4 x 4, each with its own plane.
 
 use super::grid::{Grid, GridRows, NONE};
-use super::layout::{Field, LEVELS, ROWS, SIDE, cut, fill_row, finer};
+use super::layout::{AffineMap, LEVELS, ROWS, SIDE, cut_bands, fill_row, finer};
 use super::region::of_slope;
 use super::tiles::{HALVES, Pixels, sum_cells, sum_tiles};
 use crate::map::{DepthView, Pixel};
 use crate::noise::scales::{self, Scales};
 use crate::noise::{NoiseModel, Space};
-use crate::util::parallel::{NumberedRows, Rows, in_parts};
+use crate::util::parallel::{NumberedRows, Rows, map_reduce};
 use crate::util::simd::vectorised;
 use std::array::from_fn;
 use std::ops::Range;
@@ -31,19 +31,25 @@ impl Default for Pyramid {
 
 impl Pyramid {
     /// Turns a map into q and sums it, tile by tile, and the tiles, cell by cell.
-    pub(super) fn sum<T: Pixel>(&mut self, map: &DepthView<'_, T>, space: Space, threads: usize, field: &mut Field) {
-        self.grids.iter_mut().for_each(|grid| grid.prepare(field));
+    pub(super) fn sum<T: Pixel>(
+        &mut self,
+        map: &DepthView<'_, T>,
+        space: Space,
+        threads: usize,
+        affine: &mut AffineMap,
+    ) {
+        self.grids.iter_mut().for_each(|grid| grid.prepare(affine));
         self.bands.clear();
-        self.bands.extend(cut(self.grids[LEVELS - 1].rows, field.q.len()));
-        let Field { stride, ref mut q, .. } = *field;
-        let whole = Part { first: 0, stride, q, cells: self.whole() };
-        let sum = |part: Part<'_>| {
+        self.bands.extend(cut_bands(self.grids[LEVELS - 1].rows, affine.q.len()));
+        let AffineMap { stride, ref mut q, .. } = *affine;
+        let whole = MapRows { first: 0, stride, q, cells: self.whole() };
+        let sum = |part: MapRows<'_>| {
             vectorised(
                 #[inline(always)]
                 || part.sum(map, space),
             )
         };
-        field.valid_pixels = in_parts(threads, whole, sum, |a, b| a + b);
+        affine.valid_pixels = map_reduce(threads, whole, sum, |a, b| a + b);
     }
 
     /// Holds the cells against a noise model.
@@ -54,7 +60,7 @@ impl Pyramid {
                 || cells.expect(noise, inlier_threshold as f32),
             );
         };
-        in_parts(threads, self.whole(), expect, |(), ()| ());
+        map_reduce(threads, self.whole(), expect, |(), ()| ());
     }
 
     /// Takes the smooth part's variance so many times.
@@ -104,19 +110,19 @@ impl Pyramid {
     }
 
     /// Gives each coarse cell the region that its four parts agree on, on as many threads.
-    pub(super) fn hand_up(&mut self, threads: usize) {
+    pub(super) fn propagate_up(&mut self, threads: usize) {
         for level in 1..LEVELS {
             let (finer, coarser) = self.grids.split_at_mut(level);
             let (parts, grid) = (&finer[level - 1], &mut coarser[0]);
-            let hand_up = |cells: NumberedRows<'_, u32>| cells.each().for_each(|(row, to)| parts.agreed(row, to));
+            let propagate_up = |cells: NumberedRows<'_, u32>| cells.each().for_each(|(row, to)| parts.agreed(row, to));
             let cells = NumberedRows { first: 0, per_row: grid.columns, all: &mut grid.region[..] };
-            in_parts(threads, cells, hand_up, |(), ()| ());
+            map_reduce(threads, cells, propagate_up, |(), ()| ());
         }
     }
 }
 
 /// Gives the regions of cells to those of their parts that have a pixel; the parts begin in row `first`.
-pub(super) fn hand_down(parts: &Grid, first: usize, regions: &[u32], to: &mut [u32]) {
+pub(super) fn propagate_down(parts: &Grid, first: usize, regions: &[u32], to: &mut [u32]) {
     let rows =
         to.chunks_exact_mut(parts.columns).zip(parts.sums.n[first * parts.columns..].chunks_exact(parts.columns));
     for (row, (to, pixels)) in rows.enumerate() {
@@ -138,11 +144,11 @@ impl Rows for Cells<'_> {
         self.grids[LEVELS - 1].rows()
     }
 
-    fn cut(self, rows: usize) -> (Self, Self) {
+    fn split_rows(self, rows: usize) -> (Self, Self) {
         let mut level = 0;
         let [a, b, c] = self.grids.map(|grid| {
             level += 1;
-            grid.cut(rows << (LEVELS - level))
+            grid.split_rows(rows << (LEVELS - level))
         });
         (Cells { grids: [a.0, b.0, c.0] }, Cells { grids: [a.1, b.1, c.1] })
     }
@@ -166,7 +172,7 @@ impl Cells<'_> {
 }
 
 /// Rows of a map, as many as some of the coarsest cells have.
-struct Part<'a> {
+struct MapRows<'a> {
     /// The map's row in the first.
     first: usize,
     stride: usize,
@@ -174,27 +180,27 @@ struct Part<'a> {
     cells: Cells<'a>,
 }
 
-impl Rows for Part<'_> {
+impl Rows for MapRows<'_> {
     fn rows(&self) -> usize {
         self.cells.rows()
     }
 
-    fn cut(self, rows: usize) -> (Self, Self) {
-        let Part { first, stride, q, cells } = self;
-        let (q, cells) = (q.split_at_mut(rows * ROWS * stride), cells.cut(rows));
+    fn split_rows(self, rows: usize) -> (Self, Self) {
+        let MapRows { first, stride, q, cells } = self;
+        let (q, cells) = (q.split_at_mut(rows * ROWS * stride), cells.split_rows(rows));
         (
-            Part { first, stride, q: q.0, cells: cells.0 },
-            Part { first: first + rows * ROWS, stride, q: q.1, cells: cells.1 },
+            MapRows { first, stride, q: q.0, cells: cells.0 },
+            MapRows { first: first + rows * ROWS, stride, q: q.1, cells: cells.1 },
         )
     }
 }
 
-impl Part<'_> {
+impl MapRows<'_> {
     /// Turns its rows into q and sums them, those of a row of the coarsest cells at a time, which the nearest cache holds;
     /// how many pixels are valid.
     #[inline(always)]
     fn sum<T: Pixel>(self, map: &DepthView<'_, T>, space: Space) -> usize {
-        let Part { first, stride, q, cells: Cells { mut grids } } = self;
+        let MapRows { first, stride, q, cells: Cells { mut grids } } = self;
         let (mut valid, mut pixels, mut halves) = (0, Pixels::NOTHING, HALVES);
         for (row, q) in q.chunks_exact_mut(ROWS * stride).enumerate() {
             let first = first + row * ROWS;

@@ -1,73 +1,73 @@
-//! Stage "explained": regions that are no surface of their own go.
+//! Stage "judge": regions that are no surface of their own go.
 //!
-//! In: regions and the pairs that touch. Out: fewer regions. Cells across the crease of two planes make a strip
+//! In: regions and the edges of their adjacency graph. Out: fewer regions. Cells across the crease of two planes make a strip
 //! that is flat to within the noise; each of its pixels lies on one plane or the other.
 
 use super::grid::Grid;
-use super::layout::{Field, SIDE};
-use super::merge::Pair;
+use super::layout::{AffineMap, SIDE};
+use super::merge::Edge;
 use super::region::{CellBox, Planes, Region};
 use crate::util::memory::reserve_to;
-use crate::util::parallel::{Numbered, in_parts};
+use crate::util::parallel::{Numbered, map_reduce};
 use crate::util::simd::vectorised;
 use crate::util::switches::is_on;
 
 /// A region goes if more than this share of its pixels lies on larger planes beside it.
-const EXPLAINED: f64 = 0.7;
+const REDUNDANT_SHARE: f64 = 0.7;
 /// How many times as large those are.
-const LARGER: f64 = 2.0;
+const LARGER_TIMES: f64 = 2.0;
 /// A strip across a crease lies no further from either plane than this, root mean square, in standard
 /// deviations.
-const STRIP: f64 = 7.0;
+const STRIP_DEVIATIONS: f64 = 7.0;
 /// Most larger planes that are held against a region.
-pub(super) const MOST: usize = 8;
+pub(super) const MOST_LARGER: usize = 8;
 
 /// Finds explained regions; reuses its memory.
 #[derive(Debug, Default)]
-pub(super) struct Explainer {
+pub(super) struct Redundancy {
     /// For each region the larger planes beside it that may explain it.
-    larger: Vec<[u32; MOST]>,
+    larger: Vec<[u32; MOST_LARGER]>,
     counts: Vec<usize>,
-    pub(super) is_explained: Vec<bool>,
+    pub(super) is_redundant: Vec<bool>,
 }
 
-impl Explainer {
+impl Redundancy {
     /// Finds the regions of which most pixels lie on larger planes beside them.
     pub(super) fn find(
         &mut self,
-        field: &Field,
+        affine: &AffineMap,
         grid: &Grid,
         planes: &Planes<'_>,
-        pairs: &[Pair],
+        edges: &[Edge],
         boxes: &[CellBox],
         threads: usize,
     ) {
-        let Explainer { larger, counts, is_explained } = self;
+        let Redundancy { larger, counts, is_redundant } = self;
         reserve_to(larger, grid.len());
         reserve_to(counts, grid.len());
-        reserve_to(is_explained, grid.len());
-        larger.resize(planes.regions.len(), [0; MOST]);
+        reserve_to(is_redundant, grid.len());
+        larger.resize(planes.regions.len(), [0; MOST_LARGER]);
         counts.resize(planes.regions.len(), 0);
-        for pair in pairs {
-            let [a, b] = pair.ids;
+        for edge in edges {
+            let [a, b] = edge.ids;
             for (small, large) in [(a, b), (b, a)] {
                 let [own, other] = [small, large].map(|id| planes.region(id));
                 let count = &mut counts[small as usize];
-                if *count < MOST && is_larger(own, other) && is_near(own, other) {
+                if *count < MOST_LARGER && is_larger(own, other) && is_near(own, other) {
                     larger[small as usize][*count] = large;
                     *count += 1;
                 }
             }
         }
-        is_explained.resize(planes.regions.len(), false);
+        is_redundant.resize(planes.regions.len(), false);
         let find = |part: Numbered<'_, bool>| {
-            for (id, is_explained) in (part.first..).zip(part.all) {
+            for (id, is_redundant) in (part.first..).zip(part.all) {
                 let others = &larger[id][..counts[id]];
-                let share = || share_on(field, grid, planes, id as u32, others, &boxes[id]);
-                *is_explained = is_on("explained") && !others.is_empty() && vectorised(share) > EXPLAINED;
+                let share = || share_on(affine, grid, planes, id as u32, others, &boxes[id]);
+                *is_redundant = is_on("explained") && !others.is_empty() && vectorised(share) > REDUNDANT_SHARE;
             }
         };
-        in_parts(threads, Numbered { first: 0, all: is_explained }, find, |(), ()| ());
+        map_reduce(threads, Numbered { first: 0, all: is_redundant }, find, |(), ()| ());
     }
 
     /// The larger planes beside a region that may explain some of it.
@@ -79,31 +79,31 @@ impl Explainer {
     /// none if there is no such plane.
     pub(super) fn share(
         &self,
-        field: &Field,
+        affine: &AffineMap,
         grid: &Grid,
         planes: &Planes<'_>,
         boxes: &[CellBox],
         id: u32,
     ) -> Option<[f64; 2]> {
         let others = self.larger(id);
-        (!others.is_empty()).then(|| [share_on(field, grid, planes, id, others, &boxes[id as usize]), EXPLAINED])
+        (!others.is_empty()).then(|| [share_on(affine, grid, planes, id, others, &boxes[id as usize]), REDUNDANT_SHARE])
     }
 }
 
 /// Whether another plane is much larger.
 fn is_larger(own: &Region, other: &Region) -> bool {
-    other.sums.n > LARGER * own.sums.n
+    other.sums.n > LARGER_TIMES * own.sums.n
 }
 
 /// Whether a region may be a strip on the border of a larger plane.
 fn is_near(own: &Region, larger: &Region) -> bool {
     let theirs = larger.sums_of(own);
-    theirs.squares_about(larger.abc) <= STRIP * STRIP * own.variance
+    theirs.squares_about(larger.abc) <= STRIP_DEVIATIONS * STRIP_DEVIATIONS * own.variance
 }
 
 /// The share of a region's pixels that lies on other planes, of those that lie on its own.
 #[inline(always)]
-fn share_on(field: &Field, grid: &Grid, planes: &Planes<'_>, id: u32, others: &[u32], around: &CellBox) -> f64 {
+fn share_on(affine: &AffineMap, grid: &Grid, planes: &Planes<'_>, id: u32, others: &[u32], around: &CellBox) -> f64 {
     let [mut pixels, mut by_others] = [0; 2];
     for row in around.first[1]..=around.last[1] {
         for column in around.first[0]..=around.last[0] {
@@ -111,9 +111,9 @@ fn share_on(field: &Field, grid: &Grid, planes: &Planes<'_>, id: u32, others: &[
             if grid.region[at] != id {
                 continue;
             }
-            let most = planes.reach(planes.region(id), grid.q(at)) as f32;
+            let most = planes.inlier_threshold_squared(planes.region(id), grid.q(at)) as f32;
             let place = [column, row].map(|place| place * SIDE);
-            let lie_on = |id: u32| field.lie_on(place, planes.region(id).about(place), most);
+            let lie_on = |id: u32| affine.lie_on(place, planes.region(id).about(place), most);
             let own = lie_on(id);
             pixels += own.count_ones();
             by_others += (own & others.iter().fold(0, |any, &other| any | lie_on(other))).count_ones();

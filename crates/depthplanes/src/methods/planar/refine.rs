@@ -6,7 +6,7 @@
 //! a tile is.
 
 use super::grid::{Cell, Grid, NONE, Place};
-use super::layout::in_bands;
+use super::layout::for_each_band;
 use super::pyramid::Pyramid;
 use super::region::Region;
 use crate::util::memory::reserve_to;
@@ -16,11 +16,11 @@ use std::ops::Range;
 
 /// Variances by which the other plane has to explain a tile better, so that two pieces of one plane do not trade tiles
 /// for nothing: three deviations.
-const BETTER: f64 = 9.0;
+const BETTER_VARIANCES: f64 = 9.0;
 /// Standard deviations of a pixel between a plane and the middle of a tile, from which on it is not asked.
-const FAR: f64 = 3.0;
+const FAR_DEVIATIONS: f64 = 3.0;
 /// Tiles of a row that are looked at together; a row has a multiple of them.
-const ABREAST: usize = 16;
+const LANES: usize = 16;
 
 /// A tile that goes from one region to another.
 #[derive(Clone, Copy, Debug)]
@@ -46,18 +46,18 @@ impl Refiner {
         let mut region = take(&mut pyramid.grids[0].region);
         let (grid, bands) = (&pyramid.grids[0], &pyramid.bands);
         moves.resize_with(bands.len(), Vec::new);
-        in_bands(bands, moves, [(&mut region, pyramid.per_row(0))], threads, |band, moves, [region]| {
+        for_each_band(bands, moves, [(&mut region, pyramid.per_row(0))], threads, |band, moves, [region]| {
             let rows = pyramid.rows_of(band, 0);
             // Beside its own those of an edge.
             reserve_to(moves, region.len() + 2 * grid.columns);
             let inner = rows.start + usize::from(rows.start > 0)..rows.end - usize::from(rows.end < grid.rows);
-            let mut part = Part { grid, first: rows.start, region, all };
+            let mut part = TileRows { grid, first: rows.start, region, all };
             vectorised(
                 #[inline(always)]
                 || part.settle(inner, moves),
             );
         });
-        let mut whole = Part { grid, first: 0, region: &mut region, all };
+        let mut whole = TileRows { grid, first: 0, region: &mut region, all };
         for (band, moves) in bands.iter().zip(&mut *moves).skip(1) {
             let edge = pyramid.rows_of(band, 0).start;
             whole.settle(edge - 1..edge + 1, moves);
@@ -77,7 +77,7 @@ impl Refiner {
 }
 
 /// Some rows of tiles, of which those within may go over.
-struct Part<'a> {
+struct TileRows<'a> {
     grid: &'a Grid,
     /// The first of the rows.
     first: usize,
@@ -85,13 +85,13 @@ struct Part<'a> {
     all: &'a [Region],
 }
 
-impl Part<'_> {
+impl TileRows<'_> {
     /// Lets the tiles of some rows go over; those of the rows beside them are known.
     #[inline(always)]
     fn settle(&mut self, rows: Range<usize>, moves: &mut Vec<Move>) {
         let columns = self.grid.columns;
         for row in rows {
-            for first in (0..columns).step_by(ABREAST) {
+            for first in (0..columns).step_by(LANES) {
                 let beside = find_beside(self.region, columns, (row - self.first) * columns + first);
                 let mut rest = u128::from_le_bytes(beside);
                 while rest != 0 {
@@ -119,7 +119,7 @@ impl Part<'_> {
             return None;
         }
         let cell = grid.cell(place);
-        let mut best = (own, all[own as usize].squares_of(&cell) - BETTER * cell.variance);
+        let mut best = (own, all[own as usize].squares_of(&cell) - BETTER_VARIANCES * cell.variance);
         best = better(best, &cell, other, all);
         let is_another = |id: u32| is_other(id) & (id != other);
         if beside.iter().fold(false, |any, &id| any | is_another(id)) {
@@ -139,19 +139,19 @@ impl Part<'_> {
 fn better(best: (u32, f64), cell: &Cell, id: u32, all: &[Region]) -> (u32, f64) {
     let region = &all[id as usize];
     let ([u, v], squares) = (cell.middle, region.squares_of(cell));
-    let is_near = (region.at(u, v) - cell.origin()[2]).powi(2) <= FAR * FAR * cell.variance;
+    let is_near = (region.at(u, v) - cell.origin()[2]).powi(2) <= FAR_DEVIATIONS * FAR_DEVIATIONS * cell.variance;
     if is_near & (squares < best.1) { (id, squares) } else { best }
 }
 
 /// For each tile from `at` on 1 if it has a region and one beside it another, else 0; may say so at the ends of a row.
 #[inline(always)]
-fn find_beside(region: &[u32], columns: usize, at: usize) -> [u8; ABREAST] {
-    let part = |at: usize| region.get(at..).and_then(|from| from.first_chunk::<ABREAST>());
+fn find_beside(region: &[u32], columns: usize, at: usize) -> [u8; LANES] {
+    let part = |at: usize| region.get(at..).and_then(|from| from.first_chunk::<LANES>());
     let own = part(at).expect("rows of whole parts");
     let (above, below) = (part(at.wrapping_sub(columns)).unwrap_or(own), part(at + columns).unwrap_or(own));
     let (left, right) = (part(at.wrapping_sub(1)).unwrap_or(own), part(at + 1).unwrap_or(own));
-    let mut beside = [0; ABREAST];
-    for i in 0..ABREAST {
+    let mut beside = [0; LANES];
+    for i in 0..LANES {
         let is_other = |id: u32| (id != own[i]) & (id != NONE);
         let any = is_other(above[i]) | is_other(below[i]) | is_other(left[i]) | is_other(right[i]);
         beside[i] = u8::from((own[i] != NONE) & any);

@@ -1,7 +1,7 @@
 //! A region of cells on one plane, and how far from its plane the noise lets a pixel lie.
 
 use super::grid::{Cell, Grid};
-use super::layout::Field;
+use super::layout::AffineMap;
 use super::thresholds::EDGE_ON;
 use crate::camera::Measure;
 use crate::error::Result;
@@ -14,9 +14,9 @@ use crate::util::switches::is_on;
 
 /// Below so many pixels a region's plane is too uncertain to be held against a neighbour: the cell is
 /// tested against the plane of both.
-const SMALL: f64 = 144.0;
+const UNCERTAIN_PIXELS: f64 = 144.0;
 /// A plane is fitted anew when its region has grown by this factor.
-const REFIT: f64 = 1.125;
+const REFIT_GROWTH: f64 = 1.125;
 
 /// Cells on one plane.
 #[derive(Clone, Copy, Debug)]
@@ -115,14 +115,14 @@ impl Region {
     #[inline(always)]
     pub(super) fn takes(&mut self, cell: &Cell, only_flat: bool, inlier_threshold: f64) -> bool {
         let most = if only_flat { cell.most_joining() } else { cell.most_squares(inlier_threshold) };
-        if self.sums.n < SMALL {
+        if self.sums.n < UNCERTAIN_PIXELS {
             return self.takes_anew(cell, most);
         }
         if cell.squares_about(self.abc, self.origin) > most {
             return false;
         }
         self.take(cell);
-        if self.sums.n >= REFIT * self.fitted_at
+        if self.sums.n >= REFIT_GROWTH * self.fitted_at
             && let Some(fit) = self.sums.fit()
         {
             self.aim(fit.abc);
@@ -229,14 +229,14 @@ impl Planes<'_> {
 
     /// Square of the largest distance from a region's plane at q.
     #[inline(always)]
-    pub(super) fn reach(&self, region: &Region, q: f64) -> f64 {
+    pub(super) fn inlier_threshold_squared(&self, region: &Region, q: f64) -> f64 {
         self.inlier_threshold * self.inlier_threshold * self.variance(region, q)
     }
 }
 
 /// A region image as a map of numbers, [`BENT`] and 0 missing.
-pub(super) fn of_image<'a>(image: &'a [u16], field: &Field) -> Result<DepthView<'a, u16>> {
-    let Field { width, height, stride, .. } = *field;
+pub(super) fn of_image<'a>(image: &'a [u16], affine: &AffineMap) -> Result<DepthView<'a, u16>> {
+    let AffineMap { width, height, stride, .. } = *affine;
     DepthView::with_stride(&image[..stride * height], width, height, stride)?.valid_range(1, BENT - 1)
 }
 

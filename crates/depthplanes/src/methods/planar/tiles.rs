@@ -7,13 +7,13 @@ use super::grid::{GridRows, Sums, larger};
 use super::layout::{LANES, SIDE};
 
 /// Tiles that are, which rows have more of.
-const ABREAST: usize = 2 * LANES;
+const TILE_LANES: usize = 2 * LANES;
 
 /// The middle of a tile's columns and rows from its own.
 const OFF: [f32; SIDE] = [-1.5, -0.5, 0.5, 1.5];
 
 /// Tiles of a row that are summed at a time.
-const PIECE: usize = 16 * ABREAST;
+const PIECE: usize = 16 * TILE_LANES;
 
 /// Memory for the pixels of some tiles of a row.
 pub(super) struct Pixels {
@@ -26,8 +26,8 @@ impl Pixels {
 
     /// The pixels of the tiles from one on.
     #[inline(always)]
-    fn from(&self, at: usize) -> [[&[f32; ABREAST]; SIDE]; SIDE] {
-        let mut out = [[&[0.0; ABREAST]; SIDE]; SIDE];
+    fn from(&self, at: usize) -> [[&[f32; TILE_LANES]; SIDE]; SIDE] {
+        let mut out = [[&[0.0; TILE_LANES]; SIDE]; SIDE];
         for (out, pixels) in out.as_flattened_mut().iter_mut().zip(self.by_place.as_flattened()) {
             *out = pixels[at..].first_chunk().expect("a multiple of so many");
         }
@@ -44,7 +44,7 @@ pub(super) fn sum_tiles(q: &[f32], row: usize, pixels: &mut Pixels, halves: &mut
         for (q, by_column) in q.chunks_exact(stride).zip(&mut pixels.by_place) {
             part_columns(&q[first..end], halves, by_column);
         }
-        for at in (0..(end - first) / SIDE).step_by(ABREAST) {
+        for at in (0..(end - first) / SIDE).step_by(TILE_LANES) {
             grid.put(row, first / SIDE + at, tiles(pixels.from(at)));
         }
     }
@@ -85,20 +85,20 @@ pub(super) fn sum_cells(parts: &GridRows<'_>, row: usize, side: usize, grid: &mu
 
 /// The sums of tiles that lie side by side, from each of their pixels.
 #[inline(always)]
-fn tiles(pixels: [[&[f32; ABREAST]; SIDE]; SIDE]) -> Sums<[f32; ABREAST]> {
+fn tiles(pixels: [[&[f32; TILE_LANES]; SIDE]; SIDE]) -> Sums<[f32; TILE_LANES]> {
     // Where all pixels are valid, half of the sums are known.
-    let mut sums = [0.0; ABREAST];
+    let mut sums = [0.0; TILE_LANES];
     for pixels in pixels.as_flattened() {
-        (0..ABREAST).for_each(|t| sums[t] += pixels[t]);
+        (0..TILE_LANES).for_each(|t| sums[t] += pixels[t]);
     }
     let is_whole = sums.iter().fold(true, |all, sum| all & sum.is_finite());
     if is_whole { tiles_of::<true>(pixels) } else { tiles_of::<false>(pixels) }
 }
 
 #[inline(always)]
-fn tiles_of<const WHOLE: bool>(pixels: [[&[f32; ABREAST]; SIDE]; SIDE]) -> Sums<[f32; ABREAST]> {
+fn tiles_of<const WHOLE: bool>(pixels: [[&[f32; TILE_LANES]; SIDE]; SIDE]) -> Sums<[f32; TILE_LANES]> {
     let mut out = no_sums();
-    for t in 0..ABREAST {
+    for t in 0..TILE_LANES {
         let mut q = [[0.0; SIDE]; SIDE];
         let mut w = [[0.0; SIDE]; SIDE];
         for row in 0..SIDE {
@@ -216,7 +216,7 @@ fn cells(parts: &Sums<&mut [f32]>, rows: [usize; 2], half: f32) -> Sums<[f32; LA
         }
         let fit = plane([n, u, v, uu, uv, vv], [q, uq, vq]);
         let [a, b, c] = fit.abc;
-        let [mut squares, mut strain] = [0.0; 2];
+        let [mut squares, mut child_misfit] = [0.0; 2];
         for row in 0..2 {
             for column in 0..2 {
                 let i = 2 * t + column;
@@ -227,10 +227,10 @@ fn cells(parts: &Sums<&mut [f32]>, rows: [usize; 2], half: f32) -> Sums<[f32; LA
                     + db * (db * pvv[row][i] + 2.0 * dc * pv[row][i])
                     + dc * dc * pn[row][i];
                 squares += own(psquares[row][i]) + more;
-                strain = larger(strain, more);
+                child_misfit = larger(child_misfit, more);
             }
         }
-        out.put(t, [n, u, v, uu, uv, vv, a, b, mean + c, squares, strain], fit.is_determined);
+        out.put(t, [n, u, v, uu, uv, vv, a, b, mean + c, squares, child_misfit], fit.is_determined);
     }
     out
 }

@@ -1,13 +1,13 @@
 //! What the stages of a run saw of one pixel.
 //!
-//! In: a run at its [`Moment`]s, and what came of it. Out: findings for an explanation. What the stages leave in their buffers
+//! In: a run at its [`Checkpoint`]s, and what came of it. Out: findings for an explanation. What the stages leave in their buffers
 //! is read as they go; nothing is kept for it in an ordinary run.
 
-use super::block::{Held, held_against};
-use super::curved::Sign;
+use super::block::{PixelCandidates, candidates_of_pixel};
+use super::curved::Evidence;
 use super::grid::{Grid, NONE};
 use super::grow::fewest;
-use super::pipeline::{Moment, Runner};
+use super::pipeline::{Checkpoint, Runner};
 use super::region::{BENT, Region};
 use super::thresholds::EDGE_ON;
 use crate::camera::{Hessian, Measure};
@@ -31,7 +31,7 @@ pub(super) enum Fate {
     /// A facet of a curved surface.
     Curved,
     /// Its pixels lie on larger planes.
-    Explained,
+    Redundant,
     /// Seen edge-on.
     EdgeOn,
     /// It is a plane.
@@ -49,7 +49,7 @@ pub(super) struct Against {
 }
 
 /// What was seen of one pixel.
-pub(super) struct Seen {
+pub(super) struct Trace {
     pub(super) at: [usize; 2],
     pub(super) sensor: Sensor,
     pub(super) findings: Vec<Finding>,
@@ -71,9 +71,9 @@ pub(super) struct Seen {
     pub(super) noise: Option<NoiseModel>,
 }
 
-impl Seen {
+impl Trace {
     pub(super) fn new(at: [usize; 2], sensor: Sensor) -> Self {
-        Seen {
+        Trace {
             at,
             sensor,
             findings: Vec::new(),
@@ -90,15 +90,15 @@ impl Seen {
         }
     }
 
-    pub(super) fn look(&mut self, moment: Moment, run: &Runner, noise: &NoiseModel) {
+    pub(super) fn look(&mut self, moment: Checkpoint, run: &Runner, noise: &NoiseModel) {
         self.noise = Some(*noise);
-        self.q = run.field.q[self.at[1] * run.field.stride + self.at[0]].into();
+        self.q = run.affine.q[self.at[1] * run.affine.stride + self.at[0]].into();
         match moment {
-            Moment::Grown => self.look_at_cells(run),
-            Moment::Merged => self.look_at_region(run),
-            Moment::Shown => self.look_at_smooth(run, noise),
-            Moment::Judged => self.look_at_judgement(run, noise),
-            Moment::Assigned => self.look_at_planes(run, noise),
+            Checkpoint::Grown => self.look_at_cells(run),
+            Checkpoint::Merged => self.look_at_region(run),
+            Checkpoint::Shown => self.look_at_smooth(run, noise),
+            Checkpoint::Judged => self.look_at_judgement(run, noise),
+            Checkpoint::Assigned => self.look_at_planes(run, noise),
         }
     }
 
@@ -276,34 +276,34 @@ impl Seen {
         if id == NONE {
             return;
         }
-        let sign = run.facets.signs[id as usize];
+        let sign = run.curvature.evidence[id as usize];
         let outcome = match sign {
             None => "not curved".to_string(),
-            Some(Sign::Bow) => "curved: it bows".to_string(),
-            Some(Sign::Joint(other)) => {
+            Some(Evidence::Bow) => "curved: it bows".to_string(),
+            Some(Evidence::Continuity(other)) => {
                 let pixels = run.regions.all[other as usize].sums.n;
                 format!("curved: it runs on smoothly into a neighbour of {pixels} pixels, on one quadratic")
             }
-            Some(Sign::Surroundings) => "curved: one quadratic runs through it and what is around it".to_string(),
-            Some(Sign::Turns) => "curved: off its border the surface goes on and turns gently".to_string(),
-            Some(Sign::Folds) => "curved: it turns gently into neighbours of its size".to_string(),
+            Some(Evidence::Surroundings) => "curved: one quadratic runs through it and what is around it".to_string(),
+            Some(Evidence::Turns) => "curved: off its border the surface goes on and turns gently".to_string(),
+            Some(Evidence::Folds) => "curved: it turns gently into neighbours of its size".to_string(),
         };
         let finding = Finding::new("judge", "is it flat?", outcome).refusing(sign.is_some());
-        let bow = run.facets.bows.rms(id, &run.regions.all[id as usize]);
-        self.bow = bow.filter(|_| sign == Some(Sign::Bow)).map(|[bow, most]| bow / most);
+        let bow = run.curvature.bows.rms(id, &run.regions.all[id as usize]);
+        self.bow = bow.filter(|_| sign == Some(Evidence::Bow)).map(|[bow, most]| bow / most);
         let finding = match bow {
             Some([bow, most]) => finding.with("bow", bow, DEVIATIONS).limit(Limit::AtMost(most)),
             None => finding,
         };
         self.findings.push(finding);
         let planes = run.params.planes(&run.regions.all, noise, false);
-        let share = run.explainer.share(&run.field, grid, &planes, &run.facets.boxes, id);
-        let is_explained = run.explainer.is_explained[id as usize];
+        let share = run.redundancy.share(&run.affine, grid, &planes, &run.curvature.boxes, id);
+        let is_redundant = run.redundancy.is_redundant[id as usize];
         if let Some([share, most]) = share {
-            let outcome = if is_explained { "dropped, no surface of its own" } else { "a surface of its own" };
+            let outcome = if is_redundant { "dropped, no surface of its own" } else { "a surface of its own" };
             let finding = Finding::new("judge", "its pixels on larger planes beside it", outcome);
             let finding = finding.with("share", share, "").limit(Limit::AtMost(most));
-            self.findings.push(finding.refusing(is_explained));
+            self.findings.push(finding.refusing(is_redundant));
         }
         let region = &run.regions.all[id as usize];
         let is_edge_on = region.is_edge_on(self.sensor.measure);
@@ -314,9 +314,9 @@ impl Seen {
                 .limit(Limit::AtMost(EDGE_ON));
             self.findings.push(finding.refusing(true));
         }
-        self.fate = match (sign, is_explained) {
+        self.fate = match (sign, is_redundant) {
             _ if is_edge_on => Fate::EdgeOn,
-            (_, true) => Fate::Explained,
+            (_, true) => Fate::Redundant,
             (Some(_), _) => Fate::Curved,
             _ => Fate::Kept,
         };
@@ -325,10 +325,10 @@ impl Seen {
     /// Which planes the pixel is held against, and how far off it is.
     fn look_at_planes(&mut self, run: &Runner, noise: &NoiseModel) {
         let [tiles, blocks, ..] = &run.pyramid.grids;
-        let Held { ids, middle, factor } = held_against([tiles, blocks], self.at);
+        let PixelCandidates { ids, middle, factor } = candidates_of_pixel([tiles, blocks], self.at);
         let [u, v] = self.at.map(|place| place as f64);
         self.most = factor * run.params.inlier_threshold;
-        let label = run.image[self.at[1] * run.field.stride + self.at[0]];
+        let label = run.image[self.at[1] * run.affine.stride + self.at[0]];
         self.assigned = if label == BENT { 0 } else { label };
         let planes = run.params.planes(&run.regions.all, noise, false);
         let held = ids.into_iter().map(|id| {
@@ -371,7 +371,7 @@ impl Seen {
 
     /// What became of its connected piece.
     fn conclude_piece(&mut self, run: &Runner) {
-        let groups = run.finisher.grouper.groups();
+        let groups = run.extraction.grouper.groups();
         self.piece = groups.sizes()[groups.at(self.at) as usize] as usize;
         self.is_large = self.piece > run.params.min as usize;
         let outcome = if self.is_large { "large enough" } else { "too small" };
@@ -390,7 +390,7 @@ fn named(label: u16, pixels: f64) -> String {
 pub(super) fn label_of(run: &Runner, out: &Detection, id: u32) -> u16 {
     let own_label = run.contacts.label(id);
     let mut counts = vec![0u32; out.planes.len() + 1];
-    for (ids, labels) in run.image.chunks_exact(run.field.stride).zip(out.labels.chunks_exact(out.width)) {
+    for (ids, labels) in run.image.chunks_exact(run.affine.stride).zip(out.labels.chunks_exact(out.width)) {
         let own = ids.iter().zip(labels).filter(|(own, label)| **own == own_label && **label > 0);
         own.for_each(|(_, &label)| counts[usize::from(label)] += 1);
     }

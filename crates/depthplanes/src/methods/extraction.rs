@@ -7,19 +7,19 @@ use super::method::Job;
 use super::parameter::{Param, ParamKind};
 use super::records::Records;
 use crate::components::selection::Selection;
-use crate::components::{Grouper, LinkRule};
+use crate::components::{ConnectedComponents, Connectivity};
 use crate::detection::Detection;
 use crate::error::Result;
 use crate::map::{DepthView, Pixel};
 use crate::noise::NoiseModel;
-use crate::statistics::{Describer, Seen};
+use crate::statistics::{PlaneStatistics, Seen};
 
-/// Finishes detections; reuses its memory.
+/// Extracts planes from region images; reuses its memory.
 #[derive(Default)]
-pub(crate) struct Finisher {
-    pub(crate) grouper: Grouper,
+pub(crate) struct Extraction {
+    pub(crate) grouper: ConnectedComponents,
     pub(crate) selection: Selection,
-    pub(crate) describer: Describer,
+    pub(crate) describer: PlaneStatistics,
 }
 
 /// What a method knows of its regions beside their pixels.
@@ -35,7 +35,7 @@ pub(crate) struct Wanted<'a> {
     pub(crate) valid_pixels: usize,
 }
 
-/// The stages of [`Finisher::finish`], in order.
+/// The stages of [`Extraction::extract`], in order.
 pub(crate) const STAGES: [&str; 4] = ["group", "select", "fit", "label"];
 
 /// The parameter that all methods have.
@@ -50,12 +50,12 @@ pub(crate) const MIN: Param = Param {
     source: None,
 };
 
-impl Finisher {
+impl Extraction {
     /// Makes a detection of a region image (0 = no region). The observer is told of [`STAGES`].
     ///
     /// # Errors
     /// [`crate::Error::TooManyPlanes`].
-    pub(crate) fn finish<T: Pixel>(
+    pub(crate) fn extract<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
         image: &DepthView<'_, u16>,
@@ -63,25 +63,25 @@ impl Finisher {
         job: &mut Job<'_>,
         out: &mut Detection,
     ) -> Result<()> {
-        self.finish_united(map, image, wanted, |_| (), job, out)
+        self.extract_united(map, image, wanted, |_| (), job, out)
     }
 
     /// The same; `unite` may put groups together before they are counted.
     ///
     /// # Errors
     /// [`crate::Error::TooManyPlanes`].
-    pub(crate) fn finish_united<T: Pixel>(
+    pub(crate) fn extract_united<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
         image: &DepthView<'_, u16>,
         wanted: &Wanted<'_>,
-        unite: impl FnOnce(&mut Grouper),
+        unite: impl FnOnce(&mut ConnectedComponents),
         job: &mut Job<'_>,
         out: &mut Detection,
     ) -> Result<()> {
-        let Finisher { grouper, selection, describer } = self;
+        let Extraction { grouper, selection, describer } = self;
         let &Wanted { min, min_area, noise, valid_pixels } = wanted;
-        grouper.group(image, &LinkRule::new(image.validity(), 0.0)?, job.threads);
+        grouper.group(image, &Connectivity::new(image.validity(), 0.0)?, job.threads);
         unite(grouper);
         let groups = grouper.groups();
         job.done("group");

@@ -5,7 +5,7 @@ use crate::map::{Pixel, Validity};
 
 /// When two neighbours are linked: both valid, values at most `theta` apart.
 #[derive(Clone, Copy, Debug)]
-pub struct LinkRule<T> {
+pub struct Connectivity<T> {
     /// Which values count. For integers `low` is at least 1, so that the range rules out 0.
     pub(crate) validity: Validity<T>,
     /// Largest difference. Integer maps: theta rounded down, which links the same pixels; `f32`
@@ -20,7 +20,7 @@ pub struct LinkRule<T> {
     pub(crate) is_default: bool,
 }
 
-impl<T: Pixel> LinkRule<T> {
+impl<T: Pixel> Connectivity<T> {
     /// The rule for a map and a theta in map units.
     ///
     /// # Errors
@@ -31,7 +31,7 @@ impl<T: Pixel> LinkRule<T> {
             validity.low = T::from_f64(1.0);
         }
         if theta >= 0.0 {
-            Ok(LinkRule {
+            Ok(Connectivity {
                 validity,
                 theta: T::floor_from(theta),
                 high_or_span: T::high_or_span(validity.low, validity.high),

@@ -7,7 +7,7 @@
 use super::distances::{Distances, Seen};
 use super::least_squares::AffineFit;
 use super::parts::{ByLabel, runs_of_parts};
-use super::tally::{Margin, Sums, Tally, sum};
+use super::plane_sums::{Margin, PlaneSums, Sums, sum};
 use crate::camera::Measure;
 use crate::components::selection::LabelledRun;
 use crate::detection::{MapFit, Plane, share};
@@ -15,27 +15,27 @@ use crate::limits::MAX_PLANES;
 use crate::map::{DepthView, Pixel};
 use crate::noise::NoiseModel;
 use crate::sensor::Sensor;
-use crate::util::parallel::in_parts;
+use crate::util::parallel::map_reduce;
 use crate::util::simd::vectorised;
 use std::ops::Range;
 
 /// Describes planes; reuses its memory from map to map.
 #[derive(Debug, Default)]
-pub struct Describer {
-    parts: Vec<Part>,
-    tallies: Vec<Tally>,
+pub struct PlaneStatistics {
+    parts: Vec<MapPart>,
+    tallies: Vec<PlaneSums>,
     distances: Vec<Distances>,
 }
 
 /// What is summed in one part of the map.
 #[derive(Debug, Default)]
-struct Part {
+struct MapPart {
     runs: Range<usize>,
     sums: ByLabel<Sums>,
     distances: ByLabel<Distances>,
 }
 
-impl Describer {
+impl PlaneStatistics {
     /// First pass, on as many threads. Labels are 1, 2, .. in `runs`, and none is left out.
     pub fn tally<T: Pixel>(
         &mut self,
@@ -66,7 +66,7 @@ impl Describer {
         for (label, sums) in self.parts.iter().flat_map(|part| part.sums.each()) {
             let at = usize::from(label) - 1;
             if at >= self.tallies.len() {
-                self.tallies.resize_with(at + 1, Tally::none);
+                self.tallies.resize_with(at + 1, PlaneSums::none);
             }
             self.tallies[at].add(sums);
         }
@@ -80,30 +80,30 @@ impl Describer {
         map: &DepthView<'_, T>,
         runs: &[LabelledRun],
         threads: usize,
-        work: impl Fn(&mut Part, &[LabelledRun], usize) + Sync,
+        work: impl Fn(&mut MapPart, &[LabelledRun], usize) + Sync,
     ) {
         let ranges = runs_of_parts(runs, [map.width(), map.height()]);
-        self.parts.resize_with(ranges.count(), Part::default);
+        self.parts.resize_with(ranges.count(), MapPart::default);
         let room = MAX_PLANES.min(map.area()).div_ceil(self.parts.len());
         for (part, runs) in self.parts.iter_mut().zip(runs_of_parts(runs, [map.width(), map.height()])) {
             part.runs = runs;
         }
-        let work_on = |parts: &mut [Part]| {
+        let work_on = |parts: &mut [MapPart]| {
             for part in parts {
                 let runs = &runs[part.runs.clone()];
                 work(part, runs, room);
             }
         };
-        in_parts(threads, &mut self.parts[..], work_on, |(), ()| ());
+        map_reduce(threads, &mut self.parts[..], work_on, |(), ()| ());
     }
 
     /// The planes' tallies; label 1 is the first.
-    pub fn tallies(&self) -> &[Tally] {
+    pub fn tallies(&self) -> &[PlaneSums] {
         &self.tallies
     }
 
     /// Drops tallies; the labels of the others move up.
-    pub fn retain(&mut self, keep: impl FnMut(&Tally) -> bool) {
+    pub fn retain(&mut self, keep: impl FnMut(&PlaneSums) -> bool) {
         self.tallies.retain(keep);
     }
 

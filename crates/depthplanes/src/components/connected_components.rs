@@ -1,7 +1,7 @@
 //! Groups of a map, strip by strip on several threads.
 
+use super::connectivity::Connectivity;
 use super::kernels::{Compiles, Kernel, best};
-use super::link_rule::LinkRule;
 use super::strip::Strip;
 use crate::map::DepthView;
 use crate::util::memory::reserve_to;
@@ -24,17 +24,17 @@ pub struct Run {
 
 /// Groups maps; reuses its memory from map to map of one size.
 #[derive(Debug)]
-pub struct Grouper {
+pub struct ConnectedComponents {
     groups: Groups,
 }
 
-impl Default for Grouper {
+impl Default for ConnectedComponents {
     fn default() -> Self {
         Self::with_kernel(best())
     }
 }
 
-impl Grouper {
+impl ConnectedComponents {
     /// A grouper on the fastest kernel that this processor runs.
     pub fn new() -> Self {
         Self::default()
@@ -42,7 +42,7 @@ impl Grouper {
 
     /// A grouper on a certain kernel of `kernels`.
     pub fn with_kernel(kernel: &'static Kernel) -> Self {
-        Grouper { groups: Groups::new(kernel) }
+        ConnectedComponents { groups: Groups::new(kernel) }
     }
 
     /// Whether groups of a single pixel may be left out, which saves time on noisy maps. Some are then
@@ -54,19 +54,19 @@ impl Grouper {
     /// Groups one map on `threads` threads (0 counts as 1; one without the feature `parallel`).
     ///
     /// ```
-    /// use depthplanes::{DepthView, internals::{Grouper, LinkRule}};
+    /// use depthplanes::{DepthView, internals::{ConnectedComponents, Connectivity}};
     /// let map: [u8; 8] = [
     ///     10, 11, 30, 31,
     ///      0, 12, 29,  0,
     /// ];
     /// let view = DepthView::new(&map, 4, 2)?;
-    /// let mut grouper = Grouper::new();
-    /// let groups = grouper.group(&view, &LinkRule::new(view.validity(), 1.0)?, 1);
+    /// let mut grouper = ConnectedComponents::new();
+    /// let groups = grouper.group(&view, &Connectivity::new(view.validity(), 1.0)?, 1);
     /// assert_eq!(groups.count(), 2);
     /// assert_eq!(groups.valid_pixels(), 6);
     /// # Ok::<(), depthplanes::Error>(())
     /// ```
-    pub fn group<T: Compiles>(&mut self, map: &DepthView<'_, T>, rule: &LinkRule<T>, threads: usize) -> &Groups {
+    pub fn group<T: Compiles>(&mut self, map: &DepthView<'_, T>, rule: &Connectivity<T>, threads: usize) -> &Groups {
         let groups = &mut self.groups;
         groups.prepare(map, threads);
         groups.scan_strips(map, rule);
@@ -137,7 +137,7 @@ impl Groups {
     }
 
     /// The provisional labels of each strip.
-    fn scan_strips<T: Compiles>(&mut self, map: &DepthView<'_, T>, rule: &LinkRule<T>) {
+    fn scan_strips<T: Compiles>(&mut self, map: &DepthView<'_, T>, rule: &Connectivity<T>) {
         let kernel = self.kernel;
         #[cfg(feature = "parallel")]
         if self.threads > 1 {
@@ -149,7 +149,7 @@ impl Groups {
     }
 
     /// Groups from the strips' labels, united along the borders.
-    fn join_strips<T: Compiles>(&mut self, map: &DepthView<'_, T>, rule: &LinkRule<T>) {
+    fn join_strips<T: Compiles>(&mut self, map: &DepthView<'_, T>, rule: &Connectivity<T>) {
         let (forest, sizes) = (&mut self.group_of_label, &mut self.sizes);
         if let [only] = &mut self.strips[..] {
             std::mem::swap(forest, &mut only.forest);
@@ -184,7 +184,7 @@ impl Groups {
         self.strips.iter().map(|strip| strip.valid_pixels).sum()
     }
 
-    /// How many groups of a single pixel were left out ([`Grouper::leave_out_singles`]).
+    /// How many groups of a single pixel were left out ([`ConnectedComponents::leave_out_singles`]).
     pub fn singles_left_out(&self) -> usize {
         self.strips.iter().map(|strip| strip.singles_left_out).sum()
     }

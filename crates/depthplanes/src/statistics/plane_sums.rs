@@ -12,7 +12,7 @@ use crate::sensor::Sensor;
 
 /// What the first pass knows of a plane.
 #[derive(Clone, Copy, Debug)]
-pub struct Tally {
+pub struct PlaneSums {
     /// Its pixels.
     pub pixel_count: usize,
     /// Its pixels that are at least the margin away from the map's edge.
@@ -92,10 +92,10 @@ impl Sums {
     }
 }
 
-impl Tally {
+impl PlaneSums {
     /// A plane without a pixel.
     pub(super) fn none() -> Self {
-        Tally {
+        PlaneSums {
             pixel_count: 0,
             inner_pixels: 0,
             bounding_box: PixelBox::NOTHING,
