@@ -5,11 +5,11 @@
 /// Everything that may be switched off.
 #[cfg(feature = "ablate")]
 const SWITCHES: [&str; 18] = [
-    "settle",
+    "refine",
     "bowed-merge",
     "shown",
     "wide",
-    "explained",
+    "redundant",
     "edge-on",
     "bow",
     "joint",
@@ -18,10 +18,10 @@ const SWITCHES: [&str; 18] = [
     "folds",
     "excess",
     "line",
-    "belied",
-    "reach",
-    "contact",
-    "pieces",
+    "rejected",
+    "flood",
+    "touching",
+    "gaps",
     "rounding",
 ];
 

@@ -206,7 +206,7 @@ impl Contacts {
         let region = |label: u16| usize::from(label) - 1;
         pairs.retain(|pair| {
             let [a, b] = pair.map(region);
-            is_on("contact") && merge_cost(&all[a], &all[b]) <= 1.0
+            is_on("touching") && merge_cost(&all[a], &all[b]) <= 1.0
         });
         let mut any = false;
         for pair in pairs.iter() {

@@ -159,7 +159,7 @@ impl Runner {
 
     /// Border tiles go to the region beside them that they suit better.
     fn refine_borders(&mut self, threads: usize) {
-        if is_on("settle") {
+        if is_on("refine") {
             self.refiner.refine(&mut self.pyramid, &mut self.regions.all, threads);
         }
     }
@@ -241,7 +241,7 @@ impl Runner {
         let planes = params.planes(&regions.all, noise, false);
         boundary.find(image, affine.stride, threads);
         contacts.list(boundary, image, threads);
-        if is_on("reach") {
+        if is_on("flood") {
             flood.flood(affine, &planes, boundary, &pyramid.bands, image, threads);
         }
     }
@@ -270,7 +270,7 @@ impl Runner {
         };
         let threads = job.threads;
         let bridge_gaps = |components: &mut ConnectedComponents| {
-            if is_on("pieces") {
+            if is_on("gaps") {
                 bridge.join(
                     Measured { numbers: &affine.q, stride: affine.stride, height: affine.height },
                     image,

@@ -64,7 +64,7 @@ impl Redundancy {
             for (id, is_redundant) in (part.first..).zip(part.all) {
                 let others = &larger[id][..counts[id]];
                 let share = || share_on(affine, grid, planes, id as u32, others, &boxes[id]);
-                *is_redundant = is_on("explained") && !others.is_empty() && vectorised(share) > REDUNDANT_SHARE;
+                *is_redundant = is_on("redundant") && !others.is_empty() && vectorised(share) > REDUNDANT_SHARE;
             }
         };
         map_reduce(threads, Numbered { first: 0, all: is_redundant }, find, |(), ()| ());
