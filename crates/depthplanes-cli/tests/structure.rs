@@ -45,27 +45,29 @@ fn files_with(folder: &str, words: &[&str]) -> Vec<String> {
 fn the_library_asks_nothing_of_the_outside() {
     let outside = ["std::fs", "std::env", "std::time", "std::io", "std::net", "std::process", "RandomState", "HashMap"];
     // But for the build that `make ablate` makes.
-    assert_eq!(files_with("crates/depthplanes/src", &outside), ["methods/planar/switches.rs"]);
+    assert_eq!(files_with("crates/depthplanes/src", &outside), ["util/switches.rs"]);
 }
 
 #[test]
 fn arrows_do_not_turn_back() {
-    let ranks: [(&str, &[&str]); 7] = [
+    let ranks: [(&str, &[&str]); 8] = [
         ("the detector", &["crate::detector", "crate::Detector"]),
         ("scenes", &["crate::scene"]),
         ("metrics", &["crate::metrics"]),
         ("outlines", &["crate::outline"]),
         ("methods", &["crate::methods"]),
-        ("planes' records", &["crate::describe"]),
-        ("selection", &["crate::select"]),
+        ("baselines", &["crate::baselines"]),
+        ("planes' records", &["crate::statistics::{", "crate::statistics::PlaneStatistics"]),
+        ("selection", &["crate::components::selection"]),
     ];
     let may = |name: &str, what: &str| match what {
-        _ if name.ends_with("/tests.rs") => true, // they look at all of it
-        "the detector" | "scenes" => name == "lib.rs" || name.starts_with("scene/"),
-        "methods" => ["lib.rs", "detector.rs"].contains(&name) || name.starts_with("methods/"),
+        _ if name == "lib.rs" || name.ends_with("tests.rs") => true, // they look at all of it
+        "the detector" | "scenes" => name.starts_with("scene/"),
+        "methods" => name == "detector.rs" || name.starts_with("methods/") || name.starts_with("baselines/"),
+        "baselines" => name == "methods/mod.rs" || name.starts_with("baselines/"),
         "metrics" | "outlines" => false, // nothing in the library asks how well it did, or for outlines
-        "planes' records" => name.starts_with("methods/"),
-        _ => ["methods/", "describe", "coplanar.rs"].iter().any(|start| name.starts_with(start)),
+        "planes' records" => name == "labelled.rs" || name.starts_with("methods/"),
+        _ => ["methods/", "statistics/", "coplanar.rs", "labelled.rs"].iter().any(|start| name.starts_with(start)),
     };
     for (what, words) in ranks {
         for name in files_with("crates/depthplanes/src", words) {
@@ -77,7 +79,7 @@ fn arrows_do_not_turn_back() {
 #[test]
 fn unsafe_code_stands_in_the_kernels_alone() {
     for name in files_with("crates/depthplanes/src", &["unsafe "]) {
-        assert!(name.starts_with("group/kernels/"), "{name}");
+        assert!(name.starts_with("components/kernels/") || name == "util/simd.rs", "{name}");
     }
     assert_eq!(files_with("crates/depthplanes-io/src", &["unsafe "]), [""; 0]);
     assert_eq!(files_with("crates/depthplanes-cli/src", &["unsafe "]), [""; 0]);
@@ -102,4 +104,17 @@ fn the_tests_that_the_architecture_names_exist() {
         }
     }
     assert!(named > 20, "{named} tests named");
+}
+
+#[test]
+fn nobody_but_tests_and_benchmarks_asks_for_stages_by_themselves() {
+    for folder in ["crates/depthplanes/src", "crates/depthplanes-io/src", "crates/depthplanes-cli/src"] {
+        assert_eq!(files_with(folder, &["::internals"]), [""; 0], "{folder}");
+    }
+}
+
+#[test]
+fn planar_has_fewer_than_25_files() {
+    let count = sources("crates/depthplanes/src/methods/planar").len();
+    assert!((10..25).contains(&count), "{count} files");
 }

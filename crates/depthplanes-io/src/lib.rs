@@ -22,3 +22,8 @@ pub use frame::{Frame, Pixels};
 pub use labels::{LabelImage, read_labels};
 pub use noise_table::read_noise_table;
 pub use read::{ReadOptions, decode, read};
+
+/// The README's program is a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

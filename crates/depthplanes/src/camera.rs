@@ -12,6 +12,7 @@ use crate::error::{Error, Result};
 
 /// Pinhole intrinsics in pixels. `fy` (and `fx`) may be negative: ICL-NUIM's image y axis points up.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Intrinsics {
     /// Focal length along u, pixels.
     pub fx: f64,
@@ -70,6 +71,7 @@ impl Intrinsics {
 
 /// What the numbers in a map mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Measure {
     /// Depth along the optical axis: `z = metres * value`.
     Depth {
@@ -162,6 +164,7 @@ fn positive(name: &'static str, given: f64) -> Result<()> {
 /// normal has length 1 and points to the camera's side, so `distance >= 0` is the camera's distance
 /// from the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Hessian {
     /// Unit normal in camera coordinates, towards the camera.
     pub normal: [f64; 3],

@@ -22,6 +22,7 @@ use crate::util::memory::reserve_to;
 
 /// How far two planes may be from one plane and still be joined.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Coplanar {
     /// Largest angle between their normals, degrees, 0..=90.

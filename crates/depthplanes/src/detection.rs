@@ -4,6 +4,7 @@ use crate::camera::Hessian;
 
 /// What a method found in one map. A [`crate::Detector`] owns one and reuses its memory.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Detection {
     /// Columns of the map and of `labels`.
@@ -27,6 +28,7 @@ pub struct Detection {
 
 /// Surfaces that bend, which are no planes.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Curved {
     /// Row by row, `width * height`: 0 = none, 1.. = `regions[label - 1]`. No pixel has a plane as well.
@@ -37,6 +39,7 @@ pub struct Curved {
 
 /// A connected surface that bends.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct CurvedRegion {
     /// Its value in the label image of curved regions, 1..=65535.
@@ -99,6 +102,7 @@ pub(crate) fn share(part: usize, whole: usize) -> f64 {
 
 /// One plane.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Plane {
     /// Its value in the label image, 1..=65535.
@@ -141,6 +145,7 @@ impl Plane {
 
 /// One of several planes that were joined into one.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Part {
     /// Label of the plane that it is now a part of.
     pub of: u16,
@@ -150,6 +155,7 @@ pub struct Part {
 
 /// Columns `u_min..=u_max`, rows `v_min..=v_max`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PixelBox {
     /// Leftmost column.
     pub u_min: u32,
@@ -170,6 +176,7 @@ impl PixelBox {
 
 /// `value = gradient[0] u + gradient[1] v + offset`, least squares over the plane's pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MapFit {
     /// The depth gradient (-A/C, -B/C) of the paper's eq. 5, map units per pixel along u and v.
     pub gradient: [f64; 2],
@@ -184,6 +191,7 @@ pub struct MapFit {
 /// Fitted by least squares where the sensor's error is near constant: in inverse depth for depth
 /// maps, in disparity for disparity maps.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct MetricPlane {
     /// `normal . P + distance = 0`, the normal towards the camera.
@@ -212,6 +220,7 @@ impl MetricPlane {
 
 /// What a covariance was propagated from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum CovarianceSource {
     /// The noise of the sensor, stated or estimated, its white part and its smooth one, and the rounding of its values. If

@@ -7,6 +7,7 @@ use std::fmt;
 
 /// What each stage of a method saw at one pixel, and what it came to.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Explanation {
     /// The pixel: column u, row v.
@@ -23,6 +24,7 @@ pub struct Explanation {
 
 /// What one stage saw of one thing.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Finding {
     /// Name of the stage, or what comes before the first.
@@ -64,6 +66,7 @@ impl Finding {
 
 /// A number of a [`Finding`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Quantity {
     /// What it is.
@@ -78,6 +81,7 @@ pub struct Quantity {
 
 /// What a number was held against, in its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub enum Limit {
     /// It has to be this or less.
@@ -110,6 +114,7 @@ impl Limit {
 
 /// What it came to. Its text is one sentence for people.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub enum Verdict {
     /// The pixel belongs to a plane.
@@ -254,6 +259,7 @@ fn counted(pixels: usize) -> String {
 
 /// A change of parameters after which the pixel belongs to a plane.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Suggestion {
     /// The parameters to give, with their values; the others stay.

@@ -35,8 +35,15 @@
 //! | make frames whose truth is known | [`scene`] |
 //! | run the comparators, list all parameters | [`methods`] |
 //!
-//! `examples/` has programs to copy from: `own_pixels`, `camera_loop`, `floor_height`. Files are read and written by the crate
-//! `depthplanes-io`. Feature `parallel` (on by default): large maps on rayon's threads; the answer is the same for any number.
+//! `examples/` has programs to copy from: `own_pixels`, `camera_loop`, `floor_height`; those of the crate `depthplanes-io`, which
+//! reads and writes files, are `detect_png`, `overlay`, `planes_to_ply`.
+//!
+//! | feature | |
+//! |---|---|
+//! | `parallel`, on by default | large maps on rayon's threads; the answer is the same for any number |
+//! | `serde` | detections, explanations, sensors and parameters can be written and read by serde |
+//!
+//! It compiles for any target, WebAssembly among them, with `default-features = false`.
 
 mod baselines;
 pub mod camera;
@@ -81,8 +88,3 @@ pub mod internals {
     pub use crate::statistics::least_squares::{AffineFit, Moments, ValueSums, hessian, metric_covariance};
     pub use crate::statistics::{PlaneStatistics, PlaneSums, Seen};
 }
-
-/// The README's example is a documentation test.
-#[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct Readme;

@@ -14,6 +14,7 @@ use crate::noise::sensor_noise::SensorNoise;
 /// # Ok::<(), depthplanes::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Sensor {
     /// What the numbers mean.

@@ -38,7 +38,7 @@ const POINT_BYTES: usize = 3 * 4 + 3 + 2;
 
 fn points(report: &Report<'_>) -> Result<Vec<u8>, OutputError> {
     let (camera, measure) = (report.metric_camera()?, report.frame.sensor.measure);
-    let greys = shade::greys(report.frame)?;
+    let greys = shade::greys(report.frame.view()?, report.frame.sensor.measure);
     let labels = &report.detection.labels;
     let palette = palette(report.detection.planes.len());
     let width = report.frame.width;

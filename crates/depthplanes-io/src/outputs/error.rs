@@ -46,6 +46,14 @@ pub enum OutputError {
         /// Its folder.
         folder: PathBuf,
     },
+    /// A detection of a map of another size.
+    #[error("the map is {} x {} pixels, the detection is of one of {} x {}; give the map that was looked at", map[0], map[1], found[0], found[1])]
+    Size {
+        /// Columns and rows of the map.
+        map: [usize; 2],
+        /// Those of the detection.
+        found: [usize; 2],
+    },
     /// The frame itself is not a map.
     #[error(transparent)]
     Map(#[from] depthplanes::Error),

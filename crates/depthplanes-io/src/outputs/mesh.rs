@@ -21,12 +21,30 @@ pub(super) const OUTPUT: Output = Output {
 
 fn ply(report: &Report<'_>) -> Result<Vec<u8>, OutputError> {
     let camera = report.metric_camera()?;
+    Ok(match report.outlines {
+        Some(outlines) => mesh_ply(outlines),
+        None => mesh_ply(Outliner::default().outline(report.detection, Some(&camera))?),
+    })
+}
+
+/// Planes as the bytes of a binary PLY file: coloured surfaces with holes, metres in camera coordinates. Planes that are not
+/// known in metres are left out.
+///
+/// ```
+/// use depthplanes::{DepthView, Detector, Intrinsics, Sensor, outline::Outliner};
+/// use depthplanes_io::outputs::mesh_ply;
+/// let depth_mm = [1000u16; 64 * 48];
+/// let camera = Intrinsics::new(58.0, 58.0, 31.5, 23.5)?;
+/// let mut detector = Detector::default().sensor(Sensor::default().intrinsics(camera));
+/// let found = detector.detect(DepthView::new(&depth_mm, 64, 48)?)?;
+/// let ply = mesh_ply(Outliner::default().outline(found, Some(&camera))?);
+/// assert!(ply.starts_with(b"ply\n"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn mesh_ply(outlines: &Outlines) -> Vec<u8> {
     let mut mesh = Mesh::default();
-    match report.outlines {
-        Some(outlines) => mesh.add_planes(outlines),
-        None => mesh.add_planes(Outliner::default().outline(report.detection, Some(&camera))?),
-    }
-    Ok(mesh.ply())
+    mesh.add_planes(outlines);
+    mesh.ply()
 }
 
 #[derive(Default)]

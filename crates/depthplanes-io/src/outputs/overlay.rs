@@ -9,7 +9,8 @@ use super::error::OutputError;
 use super::output::{Output, Report, Writer};
 use super::picture::{Picture, blend};
 use super::{legend, lines, shade};
-use depthplanes::Detection;
+use depthplanes::outline::Outlines;
+use depthplanes::{AnyView, Detection, Sensor};
 
 pub(super) const OUTPUT: Output = Output {
     name: "overlay",
@@ -23,22 +24,57 @@ pub(super) const OUTPUT: Output = Output {
 /// How much an outline is darker than its plane.
 const OUTLINE_SHARE: f32 = 0.5;
 
+/// The picture of what was found in a map as the bytes of a PNG file: the map in grey, each plane in its colour, with white
+/// outlines if they are given.
+///
+/// # Errors
+/// [`OutputError::Size`] unless the detection is one of a map of that size.
+///
+/// ```
+/// use depthplanes::{DepthView, Detector, Sensor};
+/// use depthplanes_io::outputs::overlay_png;
+/// let (depth_mm, sensor) = ([1000u16; 64 * 48], Sensor::default());
+/// let map = DepthView::new(&depth_mm, 64, 48)?;
+/// let mut detector = Detector::default().sensor(sensor);
+/// let png = overlay_png(map, &sensor, detector.detect(map)?, None)?;
+/// assert_eq!(&png[1..4], b"PNG");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn overlay_png<'m>(
+    map: impl Into<AnyView<'m>>,
+    sensor: &Sensor,
+    found: &Detection,
+    outlines: Option<&Outlines>,
+) -> Result<Vec<u8>, OutputError> {
+    let map = map.into();
+    if [map.width(), map.height()] != [found.width, found.height] {
+        return Err(OutputError::Size { map: [map.width(), map.height()], found: [found.width, found.height] });
+    }
+    Ok(tinted(map, sensor, found, outlines).png())
+}
+
 fn picture(report: &Report<'_>) -> Result<Picture, OutputError> {
-    let detection = report.detection;
-    let pixels = shade::greys(report.frame)?;
-    let mut picture = Picture { width: detection.width, height: detection.height, pixels };
-    tint_planes(&mut picture, detection, report.outlines.is_none());
-    if let Some(curved) = &detection.curved {
-        hatch_curved(&mut picture, &curved.labels);
-    }
-    if let Some(outlines) = report.outlines {
-        lines::draw_outlines(&mut picture, outlines);
-    }
+    let Report { frame, detection, outlines, .. } = report;
+    let mut picture = tinted(frame.view()?, &frame.sensor, detection, *outlines);
     if report.legend {
         legend::number_planes(&mut picture, detection);
         picture = legend::beside(&picture, detection);
     }
     Ok(picture)
+}
+
+/// The map in grey and over it what was found.
+fn tinted(map: AnyView<'_>, sensor: &Sensor, detection: &Detection, outlines: Option<&Outlines>) -> Picture {
+    let pixels = shade::greys(map, sensor.measure);
+    let mut picture = Picture { width: detection.width, height: detection.height, pixels };
+    tint_planes(&mut picture, detection, outlines.is_none());
+    if let Some(curved) = &detection.curved {
+        hatch_curved(&mut picture, &curved.labels);
+    }
+    if let Some(outlines) = outlines {
+        lines::draw_outlines(&mut picture, outlines);
+    }
+    picture
 }
 
 /// Columns and rows from one line of the hatching to the next.

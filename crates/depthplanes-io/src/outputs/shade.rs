@@ -4,8 +4,7 @@
 //! structured light is even. The range runs from the 2nd to the 98th percentile, so that a few
 //! wild pixels do not flatten the rest.
 
-use crate::frame::Frame;
-use depthplanes::{Measure, with_view};
+use depthplanes::{AnyView, Measure, with_view};
 
 /// Missing pixels: darker than any depth, and slightly blue so as to differ from far.
 pub(super) const MISSING: [u8; 3] = [14, 14, 24];
@@ -13,12 +12,9 @@ pub(super) const MISSING: [u8; 3] = [14, 14, 24];
 const FAR: f32 = 52.0;
 const NEAR: f32 = 208.0;
 
-/// The shade of each pixel, row by row.
-///
-/// # Errors
-/// Those of [`Frame::view`].
-pub(super) fn greys(frame: &Frame) -> depthplanes::Result<Vec<[u8; 3]>> {
-    let nearness = nearness(frame)?;
+/// The shade of each pixel of a map whose numbers mean that, row by row.
+pub(super) fn greys(map: AnyView<'_>, measure: Measure) -> Vec<[u8; 3]> {
+    let nearness = nearness(map, measure);
     let (low, high) = robust_range(&nearness);
     let scale = if high > low { (NEAR - FAR) / (high - low) } else { 0.0 };
     let middle = if high > low { 0.0 } else { (NEAR - FAR) / 2.0 };
@@ -28,22 +24,20 @@ pub(super) fn greys(frame: &Frame) -> depthplanes::Result<Vec<[u8; 3]>> {
         }
         [(FAR + middle + (near.clamp(low, high) - low) * scale).round() as u8; 3]
     };
-    Ok(nearness.iter().map(shade).collect())
+    nearness.iter().map(shade).collect()
 }
 
 /// A number for each pixel that grows with inverse depth; NaN where the pixel is missing.
-fn nearness(frame: &Frame) -> depthplanes::Result<Vec<f32>> {
-    let measure = frame.sensor.measure;
+fn nearness(map: AnyView<'_>, measure: Measure) -> Vec<f32> {
     let near = |value: f64| match measure {
         Measure::Disparity => value as f32,
         _ => measure.inverse_depth(value).map_or(f32::NAN, |inverse| inverse as f32),
     };
-    let view = frame.view()?;
-    Ok(with_view!(view, view => {
+    with_view!(map, view => {
         let valid = view.validity();
         let pixel = |&value| if valid.holds(value) { near(f64::from(value)) } else { f32::NAN };
         view.rows().flat_map(|row| row.iter().map(pixel)).collect()
-    }))
+    })
 }
 
 /// The 2nd and 98th percentile of what is not NaN; (0, 0) if nothing is.

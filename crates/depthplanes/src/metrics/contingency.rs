@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 
 /// A truth plane and the predicted plane that stands for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Match {
     /// Label in the truth.
     pub truth: u16,

@@ -12,6 +12,7 @@ pub const IOU_PART: f64 = 0.2;
 
 /// The measures, all 0..=1. As in the package a share of no planes is 0.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Evops {
     /// Planes that are one by [`IOU_FULL`], by truth label.

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 
 /// The measures of two partitions.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Partition {
     /// RI, 0..=1: the share of pairs of pixels on which both agree, together or apart. 1 for a

@@ -43,6 +43,7 @@ impl Default for Tolerance {
 
 /// A region of one image and those of the other that make it up.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Split {
     /// The region's label.
     pub whole: u16,
@@ -54,6 +55,7 @@ pub struct Split {
 /// `under_segmented` and `missed`; each predicted plane in exactly one of `correct`, the parts of
 /// `over_segmented`, `under_segmented` and `noise`. All are sorted by label.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SegComp {
     /// Truth planes found by one predicted plane.

@@ -22,6 +22,7 @@ pub(crate) const PADDED: [usize; 2] = [128, 16];
 
 /// A sensor's noise as frames of it show it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Estimate {
     /// The white part, which differs from pixel to pixel: [`SensorNoise::Depth`] of depth maps, [`SensorNoise::Value`] of

@@ -16,22 +16,19 @@ use super::space::Space;
 use crate::map::{DepthView, Pixel};
 use crate::util::memory::reserve_to;
 
+mod level;
 mod sample;
 #[cfg(test)]
 mod tests;
 mod units;
 
-use sample::{Counted, Sample};
+use level::{LEAST, Level};
+use sample::{SHIFT, Sample};
 
 /// Entries of a table over q, eight an octave: eight octaves.
 const BINS: usize = 64;
-/// Bits of single precision that do not tell the eighth of an octave.
-const SHIFT: u32 = 20;
 /// Single precision puts 1/0.8 below 1.25: values so close below an eighth of an octave belong to it.
 const NEAR: u32 = 16;
-/// Gaps of a stretch that tell its step. Flat surfaces on which every pixel has one value make fewer, and theirs are
-/// jumps in depth.
-const LEAST: usize = 8;
 /// Gaps at which a stretch is long enough.
 const ENOUGH: usize = 12;
 /// Share of the pixels whose values may be left out, the rarest: flying pixels and interpolated ones. Of a sample in which
@@ -138,17 +135,6 @@ pub struct RoundingFinder {
     gaps: Vec<f64>,
 }
 
-/// A value that occurs.
-#[derive(Clone, Copy, Debug)]
-struct Level {
-    value: f64,
-    q: f64,
-    /// How often it starts anew: in rows and in columns, the smaller of both.
-    repeats: u32,
-    /// The sum of both.
-    weight: u32,
-}
-
 /// A step and where it was found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Knot {
@@ -184,14 +170,6 @@ impl RoundingFinder {
         let unit = units::common(levels, space, whole);
         let table = if sample.is_thin() { None } else { table(levels, gaps, unit, space) };
         table.unwrap_or(Rounding::of_values(unit, space))
-    }
-}
-
-impl Level {
-    fn of(counted: Counted, space: Space) -> Self {
-        let Counted { value, rows, columns } = counted;
-        let value = f64::from(value);
-        Level { value, q: space.q(value), repeats: rows.min(columns), weight: rows + columns }
     }
 }
 

@@ -5,6 +5,7 @@ use super::table::NoiseTable;
 /// What a sensor's maker or a calibration says of its error: the standard deviation of one pixel. Rounding to the
 /// map's steps comes on top.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[expect(clippy::large_enum_variant, reason = "a handful exist at a time, and being `Copy` keeps a `Sensor` plain")]
 pub enum SensorNoise {
     /// Of depth z: `base + growth z^2`, metres.

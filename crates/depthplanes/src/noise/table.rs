@@ -17,10 +17,26 @@ pub const MAX_ROWS: usize = 16;
 /// # Ok::<(), depthplanes::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Vec<[f64; 2]>", into = "Vec<[f64; 2]>"))]
 pub struct NoiseTable {
     /// Range and standard deviation, metres; the last row is repeated up to the end.
     rows: [[f64; 2]; MAX_ROWS],
     count: usize,
+}
+
+impl TryFrom<Vec<[f64; 2]>> for NoiseTable {
+    type Error = Error;
+
+    fn try_from(rows: Vec<[f64; 2]>) -> Result<Self> {
+        NoiseTable::new(&rows)
+    }
+}
+
+impl From<NoiseTable> for Vec<[f64; 2]> {
+    fn from(table: NoiseTable) -> Self {
+        table.rows().to_vec()
+    }
 }
 
 impl NoiseTable {

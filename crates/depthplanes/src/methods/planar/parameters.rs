@@ -55,6 +55,8 @@ pub(super) const PARAMS: &[Param] = &[
 /// # Ok::<(), depthplanes::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 #[non_exhaustive]
 pub struct Planar {
     /// A plane has strictly more pixels than this.

@@ -4,10 +4,11 @@
 //! and along columns of the lattice. On a wall that is level every row has one value: it starts once in its row, and
 //! once in every column.
 
-use super::SHIFT;
 use crate::map::{DepthView, Pixel};
 use crate::util::memory::reserve_to;
 
+/// Bits of single precision that do not tell the eighth of an octave.
+pub(super) const SHIFT: u32 = 20;
 /// Pixels that are looked at, about.
 const PIXELS: usize = 16_000;
 /// Places of the table of values.

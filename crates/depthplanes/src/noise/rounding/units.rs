@@ -3,8 +3,8 @@
 //! In: the values that occur. Out: the largest number, map units, whose multiples all of them are, to within single
 //! precision; 0 where there is none, as of true floats. Rounding is at least to that.
 
-use super::{LEAST, Level};
-use crate::noise::Space;
+use super::level::{LEAST, Level};
+use crate::noise::space::Space;
 
 /// Gaps of more units say nothing: the unit is not known well enough.
 const FAR: f64 = 200.0;
