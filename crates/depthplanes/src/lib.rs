@@ -7,11 +7,9 @@
 //! // A wall 2 m away, 16-bit millimetres, row by row; 0 is missing.
 //! let (width, height) = (64, 48);
 //! let depth_mm = vec![2000u16; width * height];
-//! let sensor = Sensor {
-//!     measure: Measure::depth(0.001)?, // metres in a unit of the map
-//!     intrinsics: Some(Intrinsics::new(58.0, 58.0, 31.5, 23.5)?), // fx, fy, cx, cy, pixels
-//!     ..Sensor::default()
-//! };
+//! let sensor = Sensor::default()
+//!     .measure(Measure::depth(0.001)?) // metres in a unit of the map
+//!     .intrinsics(Intrinsics::new(58.0, 58.0, 31.5, 23.5)?); // fx, fy, cx, cy, pixels
 //! let mut detector = Detector::default().sensor(sensor); // keep it: later frames allocate nothing
 //! let found = detector.detect(DepthView::new(&depth_mm, width, height)?)?;
 //! let wall = &found.planes[0]; // the largest first
@@ -33,7 +31,8 @@
 //! | ask why a pixel has no plane | [`Detector::explain`] |
 //! | hold an answer against a truth | [`metrics`] |
 //! | make frames whose truth is known | [`scene`] |
-//! | run the comparators, list all parameters | [`methods`] |
+//! | describe the planes of another program's label image | [`describe_labels`] |
+//! | run the baselines, list all parameters | [`methods`] |
 //!
 //! `examples/` has programs to copy from: `own_pixels`, `camera_loop`, `floor_height`; those of the crate `depthplanes-io`, which
 //! reads and writes files, are `detect_png`, `overlay`, `planes_to_ply`.
