@@ -32,10 +32,13 @@ PY := .venv/bin/python
 PEERS := .venv-peers/ready
 CARGO_FUZZ := target/tools/bin/cargo-fuzz
 
+# The library as a module for WebAssembly, which is no member of the workspace.
+WASM := --manifest-path tests/wasm/Cargo.toml
+
 say = @printf '\n== %s\n' '$(1)'
 
 .NOTPARALLEL:
-.PHONY: help demo test lint fmt format clippy rust-tests rustdoc oracles bench bench-planar ablate tables peers results golden fuzz clean
+.PHONY: help demo test lint fmt format clippy rust-tests rustdoc targets oracles bench bench-planar ablate tables peers results golden fuzz clean
 
 help: ## List the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -44,14 +47,14 @@ demo: ## Build the program and run a made-up scene through it into out/demo
 	$(CARGO) build --release --package depthplanes-cli
 	"$${CARGO_TARGET_DIR:-target}"/release/depthplanes demo --out-dir out/demo
 
-test: lint rust-tests rustdoc oracles ## Run every check: formatting, lints, all tests, documentation, Python oracles
+test: lint rust-tests rustdoc targets oracles ## Run every check: formatting, lints, all tests, documentation, other targets, Python oracles
 	$(call say,all checks passed)
 
 lint: format clippy ## Check formatting and lints, change nothing
 
 format:
 	$(call say,formatting)
-	@if scripts/component rustfmt; then $(CARGO) fmt --all --check || { \
+	@if scripts/component rustfmt; then { $(CARGO) fmt --all --check && $(CARGO) fmt $(WASM) --check; } || { \
 		echo 'error: the code is not formatted; run `make fmt`' >&2; exit 1; }; fi
 
 clippy:
@@ -59,7 +62,8 @@ clippy:
 	@if scripts/component clippy; then \
 		$(CARGO) clippy --workspace --all-targets -- -D warnings; \
 		$(CARGO) clippy --package depthplanes --no-default-features --all-targets -- -D warnings; \
-		$(CARGO) clippy --package depthplanes-io --features exr --all-targets -- -D warnings; fi
+		$(CARGO) clippy --package depthplanes-io --features exr --all-targets -- -D warnings; \
+		$(CARGO) clippy $(WASM) --target-dir "$${CARGO_TARGET_DIR:-target}" --locked -- -D warnings; fi
 
 rust-tests:
 	$(call say,tests)
@@ -73,6 +77,10 @@ rust-tests:
 rustdoc:
 	$(call say,documentation)
 	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --no-deps --package depthplanes --package depthplanes-io --features depthplanes-io/exr
+
+targets: ## Check that the library compiles for WebAssembly, 64-bit ARM and 32-bit x86
+	$(call say,other targets)
+	@scripts/targets
 
 oracles: $(VENV)
 	$(call say,Python oracles)
@@ -120,10 +128,10 @@ fuzz: $(CARGO_FUZZ) ## Fuzz every reader for FUZZ_SECONDS each (30)
 			-max_total_time=$(FUZZ_SECONDS) -rss_limit_mb=1024 -print_final_stats=1; done
 
 fmt: ## Format the code
-	@if scripts/component rustfmt; then $(CARGO) fmt --all; else exit 1; fi
+	@if scripts/component rustfmt; then $(CARGO) fmt --all && $(CARGO) fmt $(WASM); else exit 1; fi
 
 clean: ## Remove everything that was made
-	rm -rf target .venv .venv-peers out fuzz/target
+	rm -rf target .venv .venv-peers out fuzz/target tests/wasm/target
 	find . -name __pycache__ -o -name .pytest_cache | xargs rm -rf
 
 # Anew when the packages change, or when an earlier attempt did not finish.
