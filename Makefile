@@ -38,7 +38,7 @@ WASM := --manifest-path tests/wasm/Cargo.toml
 say = @printf '\n== %s\n' '$(1)'
 
 .NOTPARALLEL:
-.PHONY: help demo test lint fmt format clippy rust-tests rustdoc targets oracles bench bench-planar ablate tables peers results golden fuzz clean
+.PHONY: help demo test lint fmt format clippy rust-tests rustdoc package targets oracles bench bench-planar ablate tables peers results golden fuzz clean
 
 help: ## List the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -47,7 +47,7 @@ demo: ## Build the program and run a made-up scene through it into out/demo
 	$(CARGO) build --release --package depthplanes-cli
 	"$${CARGO_TARGET_DIR:-target}"/release/depthplanes demo --out-dir out/demo
 
-test: lint rust-tests rustdoc targets oracles ## Run every check: formatting, lints, all tests, documentation, other targets, Python oracles
+test: lint rust-tests rustdoc package targets oracles ## Run every check: formatting, lints, all tests, documentation, packages, other targets, Python oracles
 	$(call say,all checks passed)
 
 lint: format clippy ## Check formatting and lints, change nothing
@@ -68,10 +68,15 @@ clippy:
 rust-tests:
 	$(call say,tests)
 	$(CARGO) test --workspace
-	$(call say,tests of the library without threads)
-	$(CARGO) test --package depthplanes --no-default-features
+	$(call say,tests of the library without threads and with serde)
+	$(CARGO) test --package depthplanes --no-default-features --features serde --lib --test serde \
+		--test grouping --test detection --test planar --test allocations
 	$(call say,tests of the readers with OpenEXR)
-	$(CARGO) test --package depthplanes-io --features exr
+	$(CARGO) test --package depthplanes-io --features exr --lib --test formats --test broken --test real_files
+
+package:
+	$(call say,packages)
+	$(CARGO) package --workspace --allow-dirty
 
 # The program has the library's name, so its own page is left out.
 rustdoc:
