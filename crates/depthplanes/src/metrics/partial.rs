@@ -25,7 +25,7 @@ const MOST: u64 = 80;
 /// Percent of a plane that lies on one surface where the plane is a piece of that surface.
 const MAINLY: u64 = 50;
 
-/// Percent of a surface from which a plane on it counts as a piece: less is a border or a speck.
+/// Percent of a surface that a plane has to cover to count as a piece: less is a border or a speck.
 const PIECE: u64 = 5;
 
 /// What became of a surface.
@@ -198,7 +198,7 @@ pub fn partial(table: &Contingency, coplanar: &[Vec<u16>]) -> Partial {
 /// What became of a surface by the planes on it; `on_same` tells how many pixels of a plane lie on it or on what is
 /// coplanar with it.
 fn fate(surface: Region, planes: &[&Overlap], on_same: impl Fn(u16) -> u64) -> Fate {
-    // Above one half there is one such plane at most.
+    // Above one half at most one plane covers so much.
     if let Some(whole) = planes.iter().find(|overlap| reaches(overlap.pixels, MOST, surface.pixels)) {
         let plane = whole.prediction;
         return if reaches(on_same(plane.label), MOST, plane.pixels) { Fate::Correct } else { Fate::Merged };
@@ -209,7 +209,7 @@ fn fate(surface: Region, planes: &[&Overlap], on_same: impl Fn(u16) -> u64) -> F
     if reaches(covered, MOST, surface.pixels) { Fate::Split } else { Fate::Missed }
 }
 
-/// The label itself and those of its groups, each once, but for pixels that are not planar.
+/// The label itself and those of its groups, each once, without [`NOT_PLANAR`].
 fn coplanar_with(label: u16, groups: &[Vec<u16>]) -> BTreeSet<u16> {
     let own = groups.iter().filter(|group| group.contains(&label)).flatten().copied();
     own.chain([label]).filter(|&label| label != NOT_PLANAR).collect()
