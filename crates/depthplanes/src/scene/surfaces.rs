@@ -190,9 +190,8 @@ impl Scene {
         self.surfaces.push(Surface::Disc { centre: to, normal, radius });
     }
 
-    /// A bent sheet: a strip of a cylinder's side of the given radius, `size` = (length of the
-    /// straight side, width across the bend, both metres), its middle at `middle`, straight along
-    /// `along`, bulging along `facing`.
+    /// A curved sheet: a strip of a cylinder's side of the given radius, `size` = (length of the straight side, width
+    /// across the curve, both metres), its middle at `middle`, straight along `along`, bulging along `facing`.
     pub fn sheet(&mut self, middle: [f64; 3], along: [f64; 3], facing: [f64; 3], size: [f64; 2], radius: f64) {
         let Some((axis, facing)) = frame(along, facing) else { return };
         let centre = sub(middle, scale(facing, radius));
