@@ -1,5 +1,5 @@
-//! fpdidm: regions grown from the flattest pixels and held against chance, our reconstruction of Bughin, Almansa, Grompone
-//! von Gioi and Tendero, *Fast Plane Detection in Disparity Maps*, ICIP 2010.
+//! fpdidm: regions grown from the flattest pixels and tested against chance, our reconstruction of Bughin, Almansa,
+//! Grompone von Gioi and Tendero, *Fast Plane Detection in Disparity Maps*, ICIP 2010.
 //!
 //! In: any map. Out: connected regions aligned with a plane that chance would not make; other pixels have no plane.
 //! The paper's text was not at hand: the plan is that of the line detector LSD, by one of its authors, which grows

@@ -16,7 +16,7 @@ use crate::methods::rays::{Plane3, Rays, Vec3, cross, dot, sub, unit};
 
 pub(super) struct Normals {
     min: usize,
-    /// Of the largest angle.
+    /// Cosine of the largest angle between normals.
     cosine: f64,
     distance: f64,
     reach: usize,

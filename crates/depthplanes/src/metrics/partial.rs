@@ -4,9 +4,9 @@
 //! and every other label is a surface; and which surfaces are one plane in space. Out: a class for each surface, and how
 //! many of the pixels that are not planar have a plane.
 //!
-//! Recorded frames are labelled by hand, and only where a person is sure. [`super::segcomp`] and [`super::evops`] would
-//! count planes on what nobody labelled as wrong. Here a predicted plane is held against labelled pixels only, and planes
-//! outside of them cost nothing. It does not tell how good a border is: 80 % of a surface will do.
+//! Recorded frames are labelled by hand, and only where a person is sure. [`super::segcomp`] and [`super::evops`]
+//! would count planes on what nobody labelled as wrong. Here a predicted plane is compared with labelled pixels only,
+//! and planes outside of them cost nothing. It does not tell how good a border is: 80 % of a surface will do.
 
 use super::contingency::{Contingency, Overlap, Region};
 use std::collections::{BTreeMap, BTreeSet};

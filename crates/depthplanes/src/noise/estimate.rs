@@ -91,7 +91,7 @@ pub struct Estimator {
     scales: Scales,
     steps: Steps,
     finder: RoundingFinder,
-    /// Of the newest frame.
+    /// The rounding of the newest frame.
     rounding: Option<Rounding>,
     /// The measure of the frames so far, and their finest step.
     seen: Option<(Measure, f64)>,

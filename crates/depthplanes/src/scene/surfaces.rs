@@ -84,13 +84,13 @@ impl Place {
         Place { origin_m: [x_m, y_m, 0.0], yaw_deg: 0.0 }
     }
 
-    /// The same, so much higher.
+    /// The place, raised by so much.
     pub fn raised(mut self, z_m: f64) -> Self {
         self.origin_m[2] += z_m;
         self
     }
 
-    /// The same, turned to the left.
+    /// The place, turned to the left.
     pub fn turned(mut self, yaw_deg: f64) -> Self {
         self.yaw_deg += yaw_deg;
         self

@@ -63,7 +63,7 @@ impl Moments {
         self.vv += n * v * v;
     }
 
-    /// The same points with the values that were summed beside them.
+    /// These sums with the values that were summed beside them.
     pub fn with(mut self, values: &ValueSums) -> Self {
         [self.q, self.uq, self.vq, self.qq] = values.lanes.map(|lanes| lanes.iter().sum());
         self
@@ -253,7 +253,7 @@ impl AffineFit {
         self
     }
 
-    /// The same plane of other values: `q' = slope q + offset`.
+    /// The plane of other values `q' = slope q + offset` at the same points.
     pub fn scaled(mut self, slope: f64, offset: f64) -> Self {
         self.abc = self.abc.map(|x| x * slope);
         self.abc[2] += offset;

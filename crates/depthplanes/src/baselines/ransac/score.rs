@@ -55,7 +55,7 @@ pub(super) struct Candidate {
     pub(super) plane: Plane3,
     /// Pixels of the three points.
     pub(super) samples: [u32; 3],
-    /// Points it has been held against, and how many were on it.
+    /// Points it has been tested on, and how many of them lie on it.
     tried: usize,
     hits: usize,
     /// Most points its piece can have, two standard deviations above the estimate; once the piece is known, its
