@@ -1,7 +1,7 @@
 //! What can be wrong with a call: the map, a parameter, a camera, or the answer's size.
 //!
-//! Every message says what was given and what is accepted. All are raised before the work begins, but for
-//! [`Error::TooManyPlanes`], the only one that can follow once a map, the parameters and the camera they need are
+//! Every message says what was given and what is accepted. A detection raises all of them before its work begins, but
+//! for [`Error::TooManyPlanes`], the only one that can follow once a map, the parameters and the camera they need are
 //! accepted.
 
 use std::fmt;

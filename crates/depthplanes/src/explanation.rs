@@ -142,8 +142,7 @@ pub enum Verdict {
         pixels: usize,
         /// The parameter `min`.
         min: u32,
-        /// Whether it was dropped early, before its pixels were looked at one by one; then half of `min` is asked
-        /// for.
+        /// Whether it was dropped early, before its pixels were looked at one by one; then half of `min` is asked for.
         early: bool,
     },
     /// Part of a curved surface.

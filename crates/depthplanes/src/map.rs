@@ -242,8 +242,7 @@ impl<'a, T: Pixel> DepthView<'a, T> {
         self.rows().map(|row| row.iter().filter(|&&value| valid.holds(value)).count()).sum()
     }
 
-    /// A view of other pixels of the same width and height, without gaps between rows, with the same rule of
-    /// validity.
+    /// A view of other pixels of the same width and height, without gaps between rows, with the same rule of validity.
     pub(crate) fn over<'b>(&self, pixels: &'b [T]) -> DepthView<'b, T> {
         assert_eq!(pixels.len(), self.area());
         DepthView { pixels, width: self.width, height: self.height, stride: self.width, validity: self.validity }

@@ -36,8 +36,7 @@ pub(super) const DELTA: Param = Param {
 
 /// Precisions that a region is tested at: delta, delta / sqrt(2), .. (our choice).
 const PRECISIONS: usize = 6;
-/// Share of the pixels at either end that the range leaves out, so that single wild ones do not decide it (our
-/// choice).
+/// Share of the pixels at either end that the range leaves out, so that single wild ones do not decide it (our choice).
 const WILD: f64 = 0.005;
 /// Most fits of a region until it is stable.
 const ROUNDS: usize = 20;

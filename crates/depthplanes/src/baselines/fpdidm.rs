@@ -3,8 +3,7 @@
 //!
 //! In: any map. Out: connected regions aligned with a plane that chance would not make; other pixels have no plane.
 //! The paper's text was not at hand: the plan is that of the line detector LSD, by one of its authors, which grows
-//! first and validates afterwards. Fast; unlike `ppdfdm`, it does not look twice at a region that starts on the wrong
-//! plane.
+//! first and validates afterwards. Fast; unlike `ppdfdm`, it does not look twice at a region that starts on the wrong plane.
 
 use super::a_contrario::{Abc, Background, DELTA, EPS, Region, paint};
 use super::affine::{Affine, Around};
@@ -88,8 +87,7 @@ impl Fpdidm {
         found
     }
 
-    /// Free pixels that are aligned with the seed's plane, which is fitted anew whenever they have become a quarter
-    /// more.
+    /// Free pixels that are aligned with the seed's plane, which is fitted anew whenever they have become a quarter more.
     fn grow(&self, background: &mut Background<'_>, seed: usize, mut plane: Abc, is_free: &[bool]) -> (Vec<u32>, Abc) {
         let affine = background.affine;
         let ([u, v], q) = (affine.place(seed), affine.q[seed]);

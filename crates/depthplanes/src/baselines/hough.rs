@@ -27,7 +27,7 @@ const NEAR: f64 = 0.1;
 const APART: f64 = 2.0;
 /// Longest distance, in epsilon.
 const TOGETHER: f64 = 20.0;
-/// Draws without a plane before it gives up: no planes are left then (our choice).
+/// Draws without a plane before it gives up: what is left then forms no planes (our choice).
 const IDLE: usize = 200_000;
 
 pub(super) struct Hough {

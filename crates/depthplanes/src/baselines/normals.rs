@@ -119,8 +119,7 @@ impl Normals {
                 members.iter().for_each(|&at| image[at] = planes.len() as u16);
             }
         }
-        // Whatever their normals: near an edge, a pixel's neighbours are on two surfaces, and its normal is that of
-        // neither.
+        // Whatever their normals: near an edge, a pixel's neighbours are on two surfaces, and its normal is that of neither.
         affine.spread(&mut image, |at, region| {
             let plane = planes[usize::from(region) - 1];
             points[at].is_some_and(|point| plane.off(point).abs() <= self.distance)

@@ -227,8 +227,7 @@ impl Groups {
         }
     }
 
-    /// The group of the pixel in column `u`, row `v`, which has to be valid and must not be a single that was left
-    /// out.
+    /// The group of the pixel in column `u`, row `v`, which has to be valid and must not be a single that was left out.
     #[inline(always)]
     pub(crate) fn at(&self, [u, v]: [usize; 2]) -> u32 {
         let strip = match &self.strips[..] {

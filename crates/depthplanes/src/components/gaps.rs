@@ -86,8 +86,7 @@ impl RowPairs {
         }
     }
 
-    /// Lists the groups of a pixel and of one two steps away, if both have one label and some pixel between is
-    /// missing.
+    /// Lists the groups of a pixel and of one two steps away, if both have one label and some pixel between is missing.
     #[inline(always)]
     fn list_pair(
         &mut self,

@@ -59,8 +59,7 @@ pub(crate) const NOISE_SCALE: Param = Param {
     source: None,
 };
 
-/// The noise that [`NOISE`] and [`NOISE_GROWTH`] state, or that the parameters of the smooth part state; none if they
-/// are 0.
+/// The noise that [`NOISE`] and [`NOISE_GROWTH`] state, or that the parameters of the smooth part state; none if they are 0.
 pub(crate) fn stated(space: Space, noise: f64, growth: f64) -> Option<SensorNoise> {
     let is_stated = noise > 0.0 || (space != Space::Value && growth > 0.0);
     is_stated.then(|| of_kind(space, noise, growth))

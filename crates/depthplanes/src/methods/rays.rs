@@ -58,8 +58,7 @@ pub(crate) struct Rays {
 }
 
 impl Rays {
-    /// The rays of a sensor. For disparity, inverse depth is known up to a factor only, on which angles do not
-    /// depend.
+    /// The rays of a sensor. For disparity, inverse depth is known up to a factor only, on which angles do not depend.
     pub(crate) fn of(sensor: &Sensor, width: usize, height: usize) -> Self {
         let (slope, offset) = match sensor.measure {
             Measure::InverseDepth { slope, offset } => (slope, offset),

@@ -53,8 +53,7 @@ impl Tries<'_> {
 /// Fewest pixels of a surface for which `min` is lowered: letting stray pixels in would make a plane of each.
 const STRAY: usize = 8;
 
-/// The changes of `min` that may let in a surface of `pixels` pixels: a value a little below that first, then smaller
-/// ones.
+/// The changes of `min` that may let in a surface of `pixels` pixels: a value a little below that first, then smaller ones.
 pub(crate) fn smaller_min(pixels: usize) -> impl Iterator<Item = Change> {
     let shares = [0.97, 0.8, 0.6, 0.4, 0.2, 0.1, 0.0].into_iter().filter(move |_| pixels >= STRAY);
     shares.map(move |share| vec![("min", floored(share * pixels as f64))])

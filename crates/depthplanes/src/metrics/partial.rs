@@ -22,7 +22,7 @@ pub const NOT_PLANAR: u16 = u16::MAX;
 /// it: SegComp's common tolerance.
 const MOST: u64 = 80;
 
-/// Percent of a plane that lies on one surface where the plane is a piece of that surface.
+/// Percent of a plane that has to lie on a surface for the plane to be a piece of it.
 const MAINLY: u64 = 50;
 
 /// Percent of a surface that a plane has to cover to count as a piece: less is a border or a speck.
@@ -37,7 +37,7 @@ pub enum Fate {
     Correct,
     /// One plane covers at least 80 % of it, but more than 20 % of that plane's labelled pixels lie elsewhere.
     Merged,
-    /// No single plane covers 80 % of it, but those do together that have at least half of their labelled pixels on it.
+    /// No single plane covers 80 % of it, but the planes with at least half of their labelled pixels on it do together.
     Split,
     /// Everything else.
     Missed,
@@ -158,8 +158,8 @@ fn share(part: u64, whole: u64) -> Option<f64> {
 /// `coplanar` has groups of truth labels that are one plane in space, such as a floor on both sides of a table's leg: a
 /// detector may give them one label or several. A label may stand in several groups; labels that do not occur do no harm.
 ///
-/// Only labelled pixels count: those of [`UNLABELLED`] are of no surface and of no plane, those of [`NOT_PLANAR`] are of
-/// planes only, so that a plane that runs on over a ball is merged.
+/// Only labelled pixels count: those of [`UNLABELLED`] are of no surface and of no plane; those of [`NOT_PLANAR`] are
+/// of planes only, so that a plane that runs on over a ball counts as merged.
 ///
 /// ```
 /// use depthplanes::metrics::{Contingency, Fate, partial};

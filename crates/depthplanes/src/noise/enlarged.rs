@@ -170,8 +170,7 @@ impl Axis {
         self.starts.extend(borders.take_while(|&border| (border as usize) < length));
     }
 
-    /// Evidence, bits, that the columns which differ are not all borders by chance: one column in `factor` is a
-    /// border.
+    /// Evidence, bits, that the columns which differ are not all borders by chance: one column in `factor` is a border.
     fn evidence(&self, factor: f64) -> f64 {
         self.differs.iter().filter(|differs| **differs).count() as f64 * factor.log2()
     }

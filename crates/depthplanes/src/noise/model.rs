@@ -253,8 +253,7 @@ impl NoiseModel {
     ///
     /// Rounding to steps D has the variance D^2 / 12. Its part `exp(-(2 pi sigma / D)^2)` follows the signal; the
     /// rest is as good as white, since the sensor's noise sigma dithers it (Widrow and Kollar, *Quantization Noise*,
-    /// 2008: the first harmonic of the error's mean). The patch says how many pixels share the part that follows the
-    /// signal.
+    /// 2008: the first harmonic of the error's mean). The patch says how many pixels share the part that follows the signal.
     #[inline]
     pub fn variance_in(&self, patch: &Patch, q: f64) -> f64 {
         let (sigma, step) = (self.sensor_sigma(q), self.step(q));

@@ -279,8 +279,7 @@ fn sharpened(gaps: &[f64], low: f64, unit: f64, is_dense: bool) -> f64 {
     sum / count
 }
 
-/// The step at q, interpolated linearly between the middles of stretches; beyond the outermost it follows a power of
-/// q.
+/// The step at q, interpolated linearly between the middles of stretches; beyond the outermost it follows a power of q.
 fn between(knots: &[Knot], q: f64) -> f64 {
     let after = knots.partition_point(|knot| knot.q < q);
     let before = after.checked_sub(1).map(|before| knots[before]);

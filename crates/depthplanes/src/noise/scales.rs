@@ -116,18 +116,15 @@ pub(crate) struct Errors {
     /// Standard deviation of means over tiles of 4 x 4 pixels.
     pub(crate) constant: f64,
     pub(crate) square: f64,
-    /// Lateral error of a pixel's direction, pixels: on a slope g the variance of these means is larger by `ray^2
-    /// g^2`.
+    /// Lateral error of a pixel's direction, pixels: on a slope g the variance of these means is larger by `ray^2 g^2`.
     pub(crate) ray: f64,
     /// Standard deviations of single pixels about a tile's plane, and of means over 16 x 16, as multiples of that.
     pub(crate) white: f64,
     pub(crate) smooth: f64,
-    /// The larger of the multiples for means over 16 x 16 and over 32 x 32 in cells without an edge, if many cells
-    /// are.
+    /// The larger of the multiples for means over 16 x 16 and over 32 x 32 in cells without an edge, if many cells are.
     pub(crate) wide: f64,
     /// As `wide`, from the cells without an edge, however few, and with the waves that are longer than these, of
-    /// which second differences see a part: extrapolated to 32 times the root of 2 pixels at the growth from 16 to
-    /// 32.
+    /// which second differences see a part: extrapolated to 32 times the root of 2 pixels at the growth from 16 to 32.
     pub(crate) whole: f64,
     /// A q in the middle of those that were seen.
     pub(crate) q: f64,

@@ -123,11 +123,9 @@ impl Ransac {
         pieces.finish()
     }
 
-    /// The candidate with the largest piece, or nearly, if one with as large a piece is likely to have been drawn by
-    /// now.
+    /// The candidate with the largest piece, or nearly, if one with as large a piece is likely to have been drawn by now.
     ///
-    /// The candidate that may have the largest piece is tested on more points, until one whose piece is known is as
-    /// good.
+    /// The candidate that may have the largest piece is tested on more points, until one whose piece is known is as good.
     fn best(
         &self,
         candidates: &mut Vec<Candidate>,

@@ -58,8 +58,7 @@ pub(super) struct Candidate {
     /// Points it has been tested on, and how many of them lie on it.
     tried: usize,
     hits: usize,
-    /// Most points its piece can have, two standard deviations above the estimate; once the piece is known, its
-    /// points.
+    /// Most points its piece can have, two standard deviations above the estimate; once the piece is known, its points.
     pub(super) most: f64,
     pub(super) is_known: bool,
 }

@@ -55,8 +55,7 @@ impl SensorError {
     /// The error of an exact sensor.
     pub const NONE: SensorError = SensorError { white: 0.0, short: 0.0, smooth: 0.0, step: 0.0 };
 
-    /// Standard deviation of what a pixel does not share with others: the white part and the rounding's step /
-    /// sqrt(12).
+    /// Standard deviation of what a pixel does not share with others: the white part and the rounding's step / sqrt(12).
     pub fn pixel(&self) -> f64 {
         (self.white * self.white + self.step * self.step / 12.0).sqrt()
     }
@@ -97,8 +96,7 @@ pub(super) struct Correlated {
 /// How a sensor errs.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ErrorModel {
-    /// White noise: the measured depth, given the exact one and a draw of deviation 1; and the error that this
-    /// amounts to.
+    /// White noise: the measured depth, given the exact one and a draw of deviation 1; and the error that this amounts to.
     White { depth_m: fn(f64, f64) -> f64, stated: fn(f64) -> SensorError },
     /// Any other error.
     Correlated(Correlated),
