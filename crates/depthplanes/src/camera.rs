@@ -43,7 +43,7 @@ impl Intrinsics {
         Ok(Intrinsics { fx, fy, cx, cy })
     }
 
-    /// The camera that stands in for one that is not known: on a map of `width` x `height` pixels it sees 53.13 degrees
+    /// The camera that is assumed where none is known: on a map of `width` x `height` pixels it sees 53.13 degrees
     /// along the longer side, half of it on either side of the middle, and its pixels are square.
     ///
     /// The focal length is the longer side, in pixels: our choice, a round figure somewhat narrower than Kinects (57 to 70

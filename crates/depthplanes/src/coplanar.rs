@@ -7,10 +7,10 @@
 //! of the other's plane. That is symmetric, and stricter the further apart they are: an angle between them lifts
 //! either centroid off the other plane by its sine times their separation.
 //!
-//! Any two parts of a union are coplanar (complete linkage). Chains would let planes drift: of a floor that bends a
-//! degree at a time each piece is coplanar with the next, and the last with none of the first. Joining by the plane
-//! fitted to the union so far would drift more slowly, and depend on the order. Planes are taken in order of size, as
-//! the equations of large ones are known best, and each goes to the union it lies nearest to.
+//! Any two parts of a union are coplanar (complete linkage). Chains would let planes drift: in a floor that curves by
+//! a degree from piece to piece, each piece is coplanar with the next, but the last with none of the first. Joining
+//! by the plane fitted to the union so far would drift more slowly, and depend on the order. Planes are taken in
+//! order of size, as the equations of large ones are known best, and each goes to the union it lies nearest to.
 //!
 //! Not for small and noisy pieces far from each other: their normals are off by degrees, and they stay as they are.
 
@@ -82,7 +82,7 @@ impl Limits {
         (distance <= self.distance_m && self.is_parallel(a.plane.normal, b.plane.normal)).then_some(distance)
     }
 
-    /// By the sine, which tells small angles where the cosine is 1 to the last digit.
+    /// Compares the sine, which tells small angles apart where the cosine is 1 to the last digit.
     fn is_parallel(&self, a: [f64; 3], b: [f64; 3]) -> bool {
         let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
         dot(a, b) >= 0.0 && dot(cross, cross) <= self.sine * self.sine
@@ -131,8 +131,8 @@ impl Joiner {
         Ok(Joiner { limits, unions: Vec::new(), members: Vec::new(), order: Vec::new(), labels: Vec::new() })
     }
 
-    /// Finds which planes are one; whether any are. `planes` are those of the labels 1, 2, .. in `runs`, by decreasing
-    /// pixel count.
+    /// Finds which planes are one; returns whether any are. `planes` are those of the labels 1, 2, .. in `runs`, by
+    /// decreasing pixel count.
     pub fn join(&mut self, planes: &[Plane], runs: &[LabelledRun]) -> bool {
         self.clear();
         for at in 0..planes.len() {
@@ -170,7 +170,8 @@ impl Joiner {
         reserve_to(&mut self.labels, MAX_PLANES);
     }
 
-    /// The union all of whose members are coplanar with a plane; of several the nearest, by its furthest member.
+    /// The union all of whose members are coplanar with a plane. If there are several, the one whose furthest member
+    /// is nearest.
     fn nearest(&self, planes: &[Plane], at: usize) -> Option<usize> {
         let mine = planes[at].metric.as_ref()?;
         let mut best = None;

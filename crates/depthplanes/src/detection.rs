@@ -15,29 +15,29 @@ pub struct Detection {
     pub labels: Vec<u16>,
     /// By decreasing pixel count; equal counts by first pixel in raster order.
     pub planes: Vec<Plane>,
-    /// The planes as they were before coplanar ones were joined ([`crate::Detector::merge_coplanar`]): those of which
-    /// several became one, by label of the union, then by their own.
+    /// The planes that became one with others, as they were before coplanar planes were joined
+    /// ([`crate::Detector::merge_coplanar`]): by label of the union, then by their own.
     pub parts: Vec<Part>,
     /// Valid pixels of the map that was given.
     pub valid_pixels: usize,
     /// Missing pixels that enhancing filled (paper, section 3b).
     pub filled_pixels: usize,
-    /// Surfaces that bend, if they were asked for ([`crate::Detector::curved`]) and the method tells them.
+    /// Curved surfaces, if they were asked for ([`crate::Detector::curved`]) and the method tells them apart.
     pub curved: Option<Curved>,
 }
 
-/// Surfaces that bend, which are no planes.
+/// Curved surfaces, which are no planes.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Curved {
-    /// Row by row, `width * height`: 0 = none, 1.. = `regions[label - 1]`. No pixel has a plane as well.
+    /// Row by row, `width * height`: 0 = none, 1.. = `regions[label - 1]`. A pixel with a label here has no plane.
     pub labels: Vec<u16>,
     /// By decreasing pixel count; equal counts by first pixel in raster order.
     pub regions: Vec<CurvedRegion>,
 }
 
-/// A connected surface that bends.
+/// A connected curved surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -58,12 +58,12 @@ impl Detection {
         self.planes.iter().map(|plane| plane.pixel_count).sum()
     }
 
-    /// The plane with that label; `None` for 0 and for a label that there is not.
+    /// The plane with that label; `None` for 0 and for a label that does not occur.
     pub fn plane(&self, label: u16) -> Option<&Plane> {
         self.planes.get(usize::from(label).checked_sub(1)?)
     }
 
-    /// (u, v) of the pixels of the plane with that label, row by row; none for a label that there is not.
+    /// (u, v) of the pixels of the plane with that label, row by row; none for a label that does not occur.
     ///
     /// ```
     /// use depthplanes::{DepthView, Detector};
@@ -83,7 +83,7 @@ impl Detection {
         })
     }
 
-    /// The parts of the plane with that label; none unless it was joined of several.
+    /// The parts of the plane with that label; none unless it was joined from several.
     pub fn parts_of(&self, label: u16) -> &[Part] {
         let end = |label: u16| self.parts.partition_point(|part| part.of <= label);
         &self.parts[end(label.saturating_sub(1))..end(label)]
@@ -200,8 +200,8 @@ pub struct MetricPlane {
     pub rms_m: f64,
     /// Mean of the points, metres.
     pub centroid_m: [f64; 3],
-    /// Area of the plane's part that is seen through its pixels' squares, square metres, taken on
-    /// the fitted plane; `None` if one of the squares reaches infinity on it.
+    /// Area of the part of the fitted plane that is seen through its pixels' squares, square metres; `None` if one of
+    /// the squares reaches infinity on the plane.
     pub area_m2: Option<f64>,
     /// Covariance of (nx, ny, nz, distance), row by row. The normal's part has rank 2, since a unit vector cannot
     /// change its length.
@@ -223,9 +223,9 @@ impl MetricPlane {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum CovarianceSource {
-    /// The noise of the sensor, stated or estimated, its white part and its smooth one, and the rounding of its values. If
-    /// the residuals have a significantly larger variance than that (three standard deviations of a chi-squared), the
-    /// covariance is larger by what they show.
+    /// The noise of the sensor, stated or estimated: its white part, its smooth part, and the rounding of its values.
+    /// If the residuals have a significantly larger variance than that (three standard deviations of a chi-squared),
+    /// the covariance is larger by what they show.
     Noise,
     /// The residuals of the fit, as independent errors: the noise of the sensor is not known.
     Residuals,

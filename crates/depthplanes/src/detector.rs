@@ -99,15 +99,15 @@ impl Detector {
         self
     }
 
-    /// Threads for large maps, 1 and up (0 counts as 1). The answer is the same for any number.
-    /// They are those of rayon's pool, where the whole of a frame is then worked on.
+    /// Threads for large maps, 1 and up (0 counts as 1). The answer is the same for any number. With more than one,
+    /// all of a frame is worked on in rayon's thread pool.
     #[must_use]
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = threads.max(1);
         self
     }
 
-    /// Whether to report surfaces that bend as well ([`Detection::curved`]), which costs time. `planar` tells them from
+    /// Whether to report curved surfaces as well ([`Detection::curved`]), which costs time. `planar` tells them from
     /// planes, `ngaf` does not.
     #[must_use]
     pub fn curved(mut self, yes: bool) -> Self {
@@ -155,9 +155,9 @@ impl Detector {
         Ok(&self.detection)
     }
 
-    /// Says why the pixel in column `at[0]`, row `at[1]` belongs to a plane or to none: what each stage saw there, and
-    /// which parameters would let it in. Runs the method several times and allocates; [`Detector::detect`] pays
-    /// nothing for it. Coplanar planes are not joined in it.
+    /// Says why the pixel in column `at[0]`, row `at[1]` belongs to a plane or to none: what each stage saw there,
+    /// and which parameters would give it one. Runs the method several times and allocates; [`Detector::detect`] pays
+    /// nothing for it. Coplanar planes are not joined here.
     ///
     /// # Errors
     /// [`Error::Pixel`] for a pixel outside of the map, and those of [`Detector::detect`].

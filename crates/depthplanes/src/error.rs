@@ -1,7 +1,8 @@
 //! What can be wrong with a call: the map, a parameter, a camera, or the answer's size.
 //!
-//! Every message says what was given and what is accepted; none is raised after the door
-//! (once a map, the parameters and the camera they need are accepted, only [`Error::TooManyPlanes`] can follow).
+//! Every message says what was given and what is accepted. A detection raises all of them before its work begins, but
+//! for [`Error::TooManyPlanes`], the only one that can follow once a map, the parameters and the camera they need are
+//! accepted.
 
 use std::fmt;
 
@@ -82,7 +83,7 @@ pub enum Error {
         /// Whether the rig is missing: the numbers are disparities of an unknown one.
         is_disparity: bool,
     },
-    /// A table of a sensor's noise that is none.
+    /// A table that is no table of a sensor's noise.
     NoiseTable {
         /// The row at fault, from 1; 0 for their number.
         row: usize,
@@ -91,14 +92,14 @@ pub enum Error {
         /// What is accepted.
         accepted: &'static str,
     },
-    /// Too little of a map is flat and valid to tell the noise from.
+    /// Too little of a map is flat and valid to estimate the noise from.
     TooFewBlocks {
         /// Blocks of valid pixels found.
         found: usize,
         /// Fewest that are accepted.
         least: usize,
     },
-    /// Maps of different measures where one noise is wanted of all.
+    /// Maps of different measures where one noise is to be estimated from all.
     MixedMeasures,
     /// More planes than 16-bit labels can name.
     TooManyPlanes {
@@ -114,7 +115,7 @@ pub enum Error {
         /// Rows of the map.
         height: usize,
     },
-    /// A truth and a prediction that are not of the same pixels.
+    /// A truth and a prediction with different numbers of pixels.
     LabelCounts {
         /// Labels of the truth.
         truth: usize,

@@ -1,11 +1,12 @@
 //! Why a pixel belongs to a plane or to none.
 //!
-//! In: what a method's stages saw at one pixel ([`Finding`]). Out: the same in order, what it came to ([`Verdict`])
-//! and what to change ([`Suggestion`]). [`crate::Detector::explain`] makes one; a detection itself keeps none of it.
+//! In: what a method's stages saw at one pixel ([`Finding`]). Out: an [`Explanation`]: these findings in order, the
+//! result ([`Verdict`]) and what to change ([`Suggestion`]). [`crate::Detector::explain`] makes one; a detection
+//! itself keeps none of it.
 
 use std::fmt;
 
-/// What each stage of a method saw at one pixel, and what it came to.
+/// What each stage of a method saw at one pixel, and the result.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -16,7 +17,7 @@ pub struct Explanation {
     pub method: &'static str,
     /// In the order of the stages.
     pub findings: Vec<Finding>,
-    /// What it came to.
+    /// The result.
     pub verdict: Verdict,
     /// Changes of parameters that give the pixel a plane; each was tried by running the method again.
     pub suggestions: Vec<Suggestion>,
@@ -50,7 +51,7 @@ impl Finding {
         self
     }
 
-    /// With a limit for the last quantity.
+    /// Adds a limit to the last quantity.
     pub(crate) fn limit(mut self, limit: Limit) -> Self {
         if let Some(quantity) = self.quantities.last_mut() {
             quantity.limit = Some(limit);
@@ -75,11 +76,11 @@ pub struct Quantity {
     pub value: f64,
     /// Its unit; empty for a bare number.
     pub unit: &'static str,
-    /// What it was held against.
+    /// What it was compared with.
     pub limit: Option<Limit>,
 }
 
-/// What a number was held against, in its unit.
+/// The bound a number was compared with, in its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -112,7 +113,7 @@ impl Limit {
     }
 }
 
-/// What it came to. Its text is one sentence for people.
+/// The result of an explanation. Its text is one sentence for people.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -130,7 +131,7 @@ pub enum Verdict {
     NotMeasured,
     /// Too few of the pixels around it hold one.
     Sparse {
-        /// Those that do, of the smallest cell.
+        /// Pixels of the smallest cell that do.
         pixels: usize,
         /// Fewest that are needed to start a region.
         least: usize,
@@ -141,21 +142,21 @@ pub enum Verdict {
         pixels: usize,
         /// The parameter `min`.
         min: u32,
-        /// Whether it was dropped before its pixels were looked at one by one, where half of `min` is asked for.
+        /// Whether it was dropped early, before its pixels were looked at one by one; then half of `min` is asked for.
         early: bool,
     },
-    /// Part of a surface that bends.
+    /// Part of a curved surface.
     Curved,
-    /// Part of a surface that is seen edge-on, or of what lies between two surfaces.
+    /// Part of a surface that is seen edge-on, or of pixels between two surfaces.
     EdgeOn,
-    /// The surface is not flat around the pixel: an edge, a crease, a bend or clutter.
+    /// The surface is not flat around the pixel: an edge, a crease, a curve or clutter.
     Uneven {
-        /// How many times as rough as noise makes a flat cell.
+        /// Roughness as a multiple of what noise makes of a flat cell.
         roughness: f64,
     },
     /// Too far from every plane around it.
     Off {
-        /// From the nearest, standard deviations.
+        /// Distance from the nearest, standard deviations.
         off: f64,
         /// Most that is accepted.
         most: f64,
@@ -164,7 +165,7 @@ pub enum Verdict {
     },
     /// No flat region lies near it.
     Alone,
-    /// A surface that a condition of the method's own drops.
+    /// A surface that is dropped by a condition of this method alone.
     Dropped {
         /// Name of the parameter.
         parameter: &'static str,
@@ -266,7 +267,7 @@ pub struct Suggestion {
     pub parameters: Vec<(&'static str, f64)>,
     /// Pixels of the plane that the pixel then belongs to.
     pub plane_pixels: usize,
-    /// Planes of the whole map as the parameters are.
+    /// Planes of the whole map with the parameters as they are.
     pub planes_before: usize,
     /// Planes of the whole map after the change.
     pub planes_after: usize,

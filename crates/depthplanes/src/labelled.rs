@@ -47,7 +47,7 @@ fn described<T: Pixel>(map: &DepthView<'_, T>, mut labels: Vec<u16>, sensor: &Se
     Detection { width, height, labels, planes, valid_pixels, ..Detection::default() }
 }
 
-/// Renames labels: 1, 2, .. by decreasing number of pixels, as ours are.
+/// Renames labels: 1, 2, .. by decreasing number of pixels, as in a detection.
 fn by_size(labels: &mut [u16]) {
     let mut sizes = vec![0usize; usize::from(u16::MAX) + 1];
     labels.iter().for_each(|&label| sizes[usize::from(label)] += 1);

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::limits::{MAX_PIXELS, MAX_SIDE};
 
 mod sealed {
-    /// What the stages need of a pixel type, and nobody else.
+    /// What the stages need of a pixel type; no part of the interface.
     pub trait Sealed: Sized {
         /// |a - b|.
         fn distance(self, other: Self) -> Self;
@@ -242,7 +242,7 @@ impl<'a, T: Pixel> DepthView<'a, T> {
         self.rows().map(|row| row.iter().filter(|&&value| valid.holds(value)).count()).sum()
     }
 
-    /// The same rule over other pixels of the same width and height, without gaps between rows.
+    /// A view of other pixels of the same width and height, without gaps between rows, with the same rule of validity.
     pub(crate) fn over<'b>(&self, pixels: &'b [T]) -> DepthView<'b, T> {
         assert_eq!(pixels.len(), self.area());
         DepthView { pixels, width: self.width, height: self.height, stride: self.width, validity: self.validity }

@@ -21,7 +21,7 @@ pub struct Sensor {
     pub measure: Measure,
     /// The camera, if known.
     pub intrinsics: Option<Intrinsics>,
-    /// How far off a pixel is by itself, if known; methods that need it estimate it from the map otherwise.
+    /// The noise of single pixels, if known; methods that need it estimate it from the map otherwise.
     pub noise: Option<SensorNoise>,
     /// The part of the error that neighbouring pixels share over tens of pixels, beside `noise`, if known; methods that
     /// need it (`planar`) estimate it from the map otherwise.
@@ -29,25 +29,25 @@ pub struct Sensor {
 }
 
 impl Sensor {
-    /// The same with numbers that mean something else.
+    /// This sensor with numbers of another meaning.
     #[must_use]
     pub fn measure(self, measure: Measure) -> Self {
         Sensor { measure, ..self }
     }
 
-    /// The same with that camera, or with none.
+    /// This sensor with that camera, or with none.
     #[must_use]
     pub fn intrinsics(self, intrinsics: impl Into<Option<Intrinsics>>) -> Self {
         Sensor { intrinsics: intrinsics.into(), ..self }
     }
 
-    /// The same with that noise of single pixels, or with one to be estimated.
+    /// This sensor with that noise of single pixels, or with one to be estimated.
     #[must_use]
     pub fn noise(self, noise: impl Into<Option<SensorNoise>>) -> Self {
         Sensor { noise: noise.into(), ..self }
     }
 
-    /// The same with that smooth part of the noise, or with one to be estimated.
+    /// This sensor with that smooth part of the noise, or with one to be estimated.
     #[must_use]
     pub fn smooth_noise(self, smooth_noise: impl Into<Option<SensorNoise>>) -> Self {
         Sensor { smooth_noise: smooth_noise.into(), ..self }
@@ -56,7 +56,7 @@ impl Sensor {
     /// Whether planes can be given in metres.
     ///
     /// # Errors
-    /// [`Error::NotMetric`] for what `wants` them, unless the measure is metric and the camera known.
+    /// [`Error::NotMetric`], which names what `wants` them, unless the measure is metric and the camera known.
     pub(crate) fn check_metric(&self, wants: &'static str) -> Result<()> {
         let is_disparity = self.measure == Measure::Disparity;
         let is_metric = !is_disparity && self.intrinsics.is_some();

@@ -1,4 +1,4 @@
-//! `planar` as a whole, where a test needs what the crate hides: on each instruction set.
+//! `planar` as a whole on each instruction set: a test that needs what the crate hides.
 
 use crate::camera::Measure;
 use crate::detection::Detection;
@@ -9,7 +9,7 @@ use crate::scene::{Random, SceneFrame, Spec};
 use crate::sensor::Sensor;
 use crate::util::simd::with_each_level;
 
-/// Depth and disparity, of one byte, two and four; one of several parts and strips.
+/// Depth and disparity, of one, two and four bytes; one map of several parts and strips.
 const SCENES: [&str; 6] = [
     "room:sensor=kinect_white,size=320x240",
     "curved:sensor=tof_white,size=320x240",
@@ -46,7 +46,7 @@ fn kernels_threads_and_repetition_change_no_byte() {
 
 #[test]
 fn an_estimated_ray_is_the_same_on_each_kernel_and_any_number_of_threads() {
-    // A wall beside a floor and a ramp, along rays that are off by 0.3 pixels.
+    // A wall beside a floor and a ramp, with a lateral error of 0.3 pixels in the pixels' directions.
     let (width, height, mut random) = (400, 320, Random::new(11));
     let mut pixel = |at: usize| {
         let [u, v] = [at % width, at / width].map(|place| place as f64 + 0.3 * random.gaussian());
@@ -60,7 +60,7 @@ fn an_estimated_ray_is_the_same_on_each_kernel_and_any_number_of_threads() {
     };
     let expected = on(1, Planar::default());
     assert_eq!(expected.planes.len(), 3);
-    // It is one: without, two of them fall to pieces.
+    // The lateral error matters: without it, two of them fall to pieces.
     assert_ne!(expected, on(1, Planar { ray: 0.05, ..Planar::default() }));
     with_each_level(|kernel| {
         for threads in [1, 2, 4] {
@@ -91,7 +91,7 @@ fn the_same_numbers_give_the_same_labels_as_whole_millimetres_and_as_metres() {
                 assert!((fit.offset * units_per_metre - of_counts.offset).abs() < 1e-6 * of_counts.offset.abs());
             }
         }
-        // One value that is no count, and the map is one of floats.
+        // With one value that is no whole number of units, the map is one of floats.
         let mut floats: Vec<f32> = counts.rows().flatten().map(|&count| f32::from(count) / 1000.0).collect();
         floats.iter_mut().filter(|value| **value > 0.0).take(1).for_each(|value| *value += 1e-5 * *value);
         let sensor = Sensor { measure: Measure::Depth { metres: 1.0 }, ..frame.sensor };

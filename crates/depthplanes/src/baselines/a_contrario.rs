@@ -36,9 +36,9 @@ pub(super) const DELTA: Param = Param {
 
 /// Precisions that a region is tested at: delta, delta / sqrt(2), .. (our choice).
 const PRECISIONS: usize = 6;
-/// Share of the pixels on either side that the range leaves out, so that single wild ones do not make it (our choice).
+/// Share of the pixels at either end that the range leaves out, so that single wild ones do not decide it (our choice).
 const WILD: f64 = 0.005;
-/// Fits of a region at most, until it is stable.
+/// Most fits of a region until it is stable.
 const ROUNDS: usize = 20;
 
 /// `q = a u + b v + c`.
@@ -67,11 +67,11 @@ pub(super) struct Region {
 }
 
 impl<'a> Background<'a> {
-    /// Of a map, delta being in standard deviations of its noise.
+    /// The background model of a map; `delta` is in standard deviations of its noise.
     pub(super) fn of(affine: &'a Affine, noise: &NoiseModel, delta: f64) -> Self {
         let [low, high] = affine.range(WILD).unwrap_or_default();
         let range = high - low + noise.step((low + high) / 2.0);
-        // Beyond, the probability of an aligned pixel would be above 1/2, and chance would explain everything.
+        // Beyond that, the probability of an aligned pixel would be above 1/2, and chance would explain everything.
         let most = if range > 0.0 { range / 4.0 } else { f64::INFINITY };
         let delta = affine.q.iter().map(|&q| (delta * noise.variance(q).sqrt()).min(most)).collect();
         let pixels = affine.valid_pixels.max(1) as f64;
@@ -114,8 +114,8 @@ impl<'a> Background<'a> {
         Some(sums.fit()?.moved([u, v, q]).abc)
     }
 
-    /// The free pixels connected with the seed that lie within `scale` deltas of a plane, as a region; none without a
-    /// plane of their own.
+    /// The free pixels connected with the seed that lie within `scale` deltas of a plane, as a region; none if no
+    /// plane can be fitted to them.
     pub(super) fn region(&mut self, seed: usize, plane: &Abc, scale: f64, is_free: &[bool]) -> Option<Region> {
         let affine = self.affine;
         self.start_flood();
@@ -137,7 +137,8 @@ impl<'a> Background<'a> {
         Some(Region { plane, pixels, rim, log10_nfa })
     }
 
-    /// The region of a seed, fitted and flooded again until it is stable: the one with the fewest false alarms on the way.
+    /// The region of a seed, fitted and flooded again until it is stable; of all these, the one with the fewest false
+    /// alarms.
     pub(super) fn settle(&mut self, seed: usize, plane: &Abc, is_free: &[bool]) -> Option<Region> {
         let mut best = self.region(seed, plane, 1.0, is_free)?;
         let (mut plane, mut pixels) = (best.plane, best.pixels.len());

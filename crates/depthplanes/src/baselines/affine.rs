@@ -1,7 +1,8 @@
 //! A map in the space where planes are affine, and the plane around each of its pixels.
 //!
-//! In: a map and what its numbers mean. Out: q for every pixel, disparity or inverse depth, and the least-squares plane
-//! `q = a u + b v + c` in a window around it (eq. 5), from running sums of columns: the cost grows with the window's side only.
+//! In: a map and what its numbers mean. Out: q for every pixel, disparity or inverse depth, and the least-squares
+//! plane `q = a u + b v + c` in a window around it (eq. 5), from running sums of columns: the cost grows with the
+//! window's side only.
 
 use crate::map::{DepthView, Pixel};
 use crate::methods::rays::Rays;
@@ -26,7 +27,7 @@ impl Affine {
         Rays::scaled(sensor, [self.width, self.height], median)
     }
 
-    /// Of a map.
+    /// A map in q.
     pub(super) fn of<T: Pixel>(map: &DepthView<'_, T>, space: Space) -> Self {
         let validity = map.validity();
         let q_of = |&value: &T| {
@@ -55,7 +56,7 @@ impl Affine {
         beside.into_iter().flatten()
     }
 
-    /// Smallest and largest q that a share of the pixels lie below and above; none if no pixel is valid.
+    /// The q below which a share of the pixels lies, and the q above which as many lie; none if no pixel is valid.
     pub(super) fn range(&self, share: f64) -> Option<[f64; 2]> {
         let mut all: Vec<f64> = self.q.iter().copied().filter(|q| q.is_finite()).collect();
         let few = (all.len() as f64 * share) as usize;
@@ -63,7 +64,8 @@ impl Affine {
         Some([few, last].map(|at| *all.select_nth_unstable_by(at, f64::total_cmp).1))
     }
 
-    /// Gives pixels beside a region (0 = none) to it if it takes them, given pixel and region, and so on from there.
+    /// Gives pixels beside a region to it where `takes` accepts the pixel and the region, and so on from there; 0 =
+    /// no region.
     pub(super) fn spread(&self, image: &mut [u16], takes: impl Fn(usize, u16) -> bool) {
         let mut queue: Vec<usize> = (0..image.len()).filter(|&at| image[at] > 0).collect();
         let mut next = 0;

@@ -13,7 +13,7 @@ use crate::methods::parameter::{Param, ParamKind};
 use crate::noise::{NoiseModel, Space, noise_of_map};
 use crate::sensor::Sensor;
 
-/// The parameter of methods that draw lots.
+/// The parameter of methods that draw at random.
 pub(super) const SEED: Param = Param {
     name: "seed",
     default: 1.0,
@@ -25,7 +25,7 @@ pub(super) const SEED: Param = Param {
     source: None,
 };
 
-/// A method of another group, made anew from its description.
+/// A method of another group, reimplemented from its description.
 pub(super) trait Baseline: Send + Sized + 'static {
     /// Name, in flags and tables.
     const NAME: &'static str;
@@ -75,7 +75,7 @@ impl Values<'_> {
         self.values[at]
     }
 
-    /// That of a parameter that is a whole number.
+    /// The value of a parameter that is a whole number.
     pub(super) fn whole(&self, name: &str) -> usize {
         self.of(name) as usize
     }

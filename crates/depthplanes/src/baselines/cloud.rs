@@ -21,7 +21,7 @@ pub(super) struct Cloud {
 }
 
 impl Cloud {
-    /// Of a map; normals are those of windows of `2 radius + 1` columns and rows.
+    /// The points of a map; normals are those of windows of `2 radius + 1` columns and rows.
     pub(super) fn of(affine: &Affine, sensor: &Sensor, radius: usize) -> Self {
         let rays = affine.rays(sensor);
         let nowhere = [f64::NAN; 3];

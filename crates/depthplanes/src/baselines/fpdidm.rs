@@ -1,9 +1,9 @@
-//! fpdidm: regions grown from the flattest pixels and held against chance, our reconstruction of Bughin, Almansa, Grompone
-//! von Gioi and Tendero, *Fast Plane Detection in Disparity Maps*, ICIP 2010.
+//! fpdidm: regions grown from the flattest pixels and tested against chance, our reconstruction of Bughin, Almansa,
+//! Grompone von Gioi and Tendero, *Fast Plane Detection in Disparity Maps*, ICIP 2010.
 //!
-//! In: any map. Out: connected regions aligned with a plane that chance would not make; other pixels have no plane. The
-//! paper's text was not at hand: the plan is that of the line detector LSD, by one of its authors, which grows first and
-//! validates then. Fast; a region that starts on the wrong plane is not looked at twice, as `ppdfdm` does.
+//! In: any map. Out: connected regions aligned with a plane that chance would not make; other pixels have no plane.
+//! The paper's text was not at hand: the plan is that of the line detector LSD, by one of its authors, which grows
+//! first and validates afterwards. Fast; unlike `ppdfdm`, it does not look twice at a region that starts on the wrong plane.
 
 use super::a_contrario::{Abc, Background, DELTA, EPS, Region, paint};
 use super::affine::{Affine, Around};
@@ -13,7 +13,7 @@ use crate::methods::method::Job;
 use crate::methods::parameter::{Param, ParamKind};
 use crate::statistics::least_squares::Moments;
 
-/// Down to which share of delta a region that chance explains is cut, by halves (five times, as in LSD).
+/// Smallest share of delta to which a region that chance explains is cut, by halves (five times, as in LSD).
 const SMALLEST: f64 = 1.0 / 32.0;
 
 pub(super) struct Fpdidm {
@@ -75,7 +75,7 @@ impl Fpdidm {
                 continue;
             }
             let (members, plane) = self.grow(background, seed, plane, &is_free);
-            // Those that grew no plane may still join one.
+            // Seeds that grew no plane may still join one.
             members.iter().for_each(|&at| is_seed[at as usize] = false);
             if let Some(region) = self.validate(background, seed, &plane, &is_free) {
                 for &at in &region.pixels {
@@ -87,7 +87,7 @@ impl Fpdidm {
         found
     }
 
-    /// Free pixels that are aligned with the seed's plane, which is fitted anew whenever they are a quarter more.
+    /// Free pixels that are aligned with the seed's plane, which is fitted anew whenever they have become a quarter more.
     fn grow(&self, background: &mut Background<'_>, seed: usize, mut plane: Abc, is_free: &[bool]) -> (Vec<u32>, Abc) {
         let affine = background.affine;
         let ([u, v], q) = (affine.place(seed), affine.q[seed]);
@@ -116,8 +116,8 @@ impl Fpdidm {
         (members, sums.fit().map_or(plane, |fit| fit.moved([u, v, q]).abc))
     }
 
-    /// The pixels connected with the seed that are aligned with the plane, cut to smaller deltas until chance does not explain
-    /// them; none if it always does.
+    /// The pixels connected with the seed that are aligned with the plane, cut to smaller deltas until chance does
+    /// not explain them; none if it always does.
     fn validate(&self, background: &mut Background<'_>, seed: usize, plane: &Abc, is_free: &[bool]) -> Option<Region> {
         let mut region = background.settle(seed, plane, is_free)?;
         let mut scale = 1.0;

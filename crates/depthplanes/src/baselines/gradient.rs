@@ -1,10 +1,10 @@
 //! gradient: neighbour grouping on gradients, as Hoa, Minh and Dung's later method for ground planes does, from its
 //! description.
 //!
-//! In: any map. Out: connected regions whose neighbours have the same gradient: the (a, b) of the plane around a pixel (eq. 5),
-//! in inverse depth or disparity, where it is one over a plane. Unlike `ngaf` it tells surfaces that meet at a crease. It
-//! does not tell parallel planes from each other unless values have to be continuous as well, and loses what is narrower than
-//! its window.
+//! In: any map. Out: connected regions whose neighbours have the same gradient: the (a, b) of the plane around a
+//! pixel (eq. 5), in inverse depth or disparity, where a plane has one gradient. Unlike `ngaf` it tells surfaces that
+//! meet at a crease. It does not tell parallel planes from each other unless values have to be continuous as well,
+//! and loses what is narrower than its window.
 
 use super::affine::{Affine, Around};
 use super::baseline::{Baseline, Input, Segmented, Values};
@@ -158,7 +158,7 @@ impl Gradient {
         (affine.q[other] - affine.q[one] - rise[0] * (x - u) - rise[1] * (y - v)).abs()
     }
 
-    /// Standard deviation of a window's gradient, of pixels whose own is 1.
+    /// Standard deviation of a window's gradient, for pixels of standard deviation 1.
     fn gradient_sigma(&self) -> f64 {
         let radius = self.radius as f64;
         let side = 2.0 * radius + 1.0;

@@ -1,9 +1,10 @@
 //! hough: the randomised Hough transform in space (Borrmann, Elseberg, Lingemann, Nüchter, *The 3D Hough Transform for plane
 //! detection in point clouds*, 2011), from its description.
 //!
-//! In: any map; lengths are in metres where unit and camera are known. Out: connected pieces of planes that triples of
-//! points vote for. Votes are counted in a ball of cells, each about as large as any other but the two at the poles. Planes
-//! that fall into one cell are one plane to it; it uses no normals, so that a plane takes a strip of those it cuts.
+//! In: any map; lengths are in metres where unit and camera are known. Out: connected pieces of planes that triples
+//! of points vote for. Votes are counted in a ball of cells, each about as large as any other but the two at the
+//! poles. Planes that fall into one cell are not told apart; no normals are used, so that a plane takes a strip of
+//! those it cuts.
 
 use super::affine::Affine;
 use super::baseline::{Baseline, Input, SEED, Segmented, Values};
@@ -22,11 +23,11 @@ const SHELLS: usize = 512;
 /// Half the side of the window that a triple is drawn from, as a share of the map's longer side (our choice: near points
 /// are near in the image).
 const NEAR: f64 = 0.1;
-/// Shortest distance of two points of a triple, in epsilon: the direction of closer ones is that of the noise (our choice).
+/// Shortest distance of two points of a triple, in epsilon: closer ones give the direction of the noise (our choice).
 const APART: f64 = 2.0;
 /// Longest distance, in epsilon.
 const TOGETHER: f64 = 20.0;
-/// Draws without a plane before it gives up: what is left is in no order then (our choice).
+/// Draws without a plane before it gives up: what is left then forms no planes (our choice).
 const IDLE: usize = 200_000;
 
 pub(super) struct Hough {
@@ -125,7 +126,7 @@ impl Hough {
             idle += 1;
             let Some((plane, first)) = triples.draw(&free, &pieces) else { continue };
             let Some(cell) = ball.cell(&plane) else { continue };
-            // A cell that was a miss has more.
+            // A cell that was tried without success has more votes.
             if ball.vote(cell, plane, first) != self.votes {
                 continue;
             }

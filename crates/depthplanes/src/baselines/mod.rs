@@ -1,4 +1,4 @@
-//! Methods of other groups, made anew from their descriptions, to hold ours against.
+//! Baselines: methods of other groups, reimplemented from their descriptions, to compare ours with.
 //!
 //! A baseline is one file, or a folder if it has stages of its own: a struct with its parameters that is a
 //! [`baseline::Baseline`], and a row here. `affine.rs`, `cloud.rs`, `pieces.rs` and `a_contrario.rs` hold what several

@@ -1,5 +1,5 @@
-//! normals: local-normal grouping (Yoo, Kim, Kim, Park, *Real-time plane detection based on depth map from Kinect*, ISR 2013),
-//! from its description.
+//! normals: local-normal grouping (Yoo, Kim, Kim, Park, *Real-time plane detection based on depth map from Kinect*,
+//! ISR 2013), from its description.
 //!
 //! In: any map; lengths are in metres where unit and camera are known. Out: connected regions of points whose own normals
 //! and places suit the region's plane. The paper's normals are cross products over the four neighbours; here the
@@ -16,7 +16,7 @@ use crate::methods::rays::{Plane3, Rays, Vec3, cross, dot, sub, unit};
 
 pub(super) struct Normals {
     min: usize,
-    /// Of the largest angle.
+    /// Cosine of the largest angle between normals.
     cosine: f64,
     distance: f64,
     reach: usize,
@@ -119,7 +119,7 @@ impl Normals {
                 members.iter().for_each(|&at| image[at] = planes.len() as u16);
             }
         }
-        // Whatever their normals: near an edge, neighbours are on two surfaces, and normals are those of neither.
+        // Whatever their normals: near an edge, a pixel's neighbours are on two surfaces, and its normal is that of neither.
         affine.spread(&mut image, |at, region| {
             let plane = planes[usize::from(region) - 1];
             points[at].is_some_and(|point| plane.off(point).abs() <= self.distance)

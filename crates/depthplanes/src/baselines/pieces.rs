@@ -1,9 +1,9 @@
 //! From planes in space to connected pieces of the image: the steps that RANSAC and the Hough transform share.
 //!
-//! In: a map's points, and planes that some of them suggest. Out: the region of every pixel. A piece is a connected part
-//! of the points on a plane that no earlier piece has; its plane is fitted to it in q, where the sensor's noise is even.
-//! Points near edges, whose normals are those of neither side, are only lent to the piece beside them: they found no
-//! plane, and a later piece whose normal they do have takes them.
+//! In: a map's points, and planes that some of them suggest. Out: the region of every pixel. A piece is a connected
+//! part of the points on a plane that no earlier piece has; its plane is fitted to it in q, where the sensor's noise
+//! is even. Points near edges, whose normals are those of neither side, are only lent to the piece beside them: they
+//! start no plane, and a later piece whose normal they share takes them.
 
 use super::affine::Affine;
 use super::cloud::Cloud;
@@ -53,7 +53,7 @@ pub(super) struct Pieces<'a> {
     affine: &'a Affine,
     pub(super) cloud: &'a Cloud,
     pub(super) tolerance: Tolerance,
-    /// How far the windows that normals are from reach, pixels.
+    /// How far the windows reach that normals are computed from, pixels.
     reach: usize,
     planes: Vec<Plane3>,
     /// For each pixel the number of its piece; 0 for none.
@@ -66,7 +66,7 @@ pub(super) struct Pieces<'a> {
 }
 
 impl<'a> Pieces<'a> {
-    /// None yet. Normals are from windows that reach so many pixels.
+    /// No pieces yet. Normals are from windows that reach so many pixels.
     pub(super) fn new(affine: &'a Affine, cloud: &'a Cloud, tolerance: Tolerance, reach: usize) -> Self {
         let pixels = affine.q.len();
         let (image, lent, reached) = (vec![0; pixels], vec![0; pixels], vec![0; pixels]);
@@ -133,8 +133,8 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// Takes the piece around these points, its plane fitted to it, unless it has `min` points or fewer. Gives how many
-    /// points are free no longer.
+    /// Takes the piece around these points, its plane fitted to it, unless it has `min` points or fewer. Returns how
+    /// many points are no longer free.
     pub(super) fn take(&mut self, plane: &Plane3, from: &[u32], min: usize) -> Option<usize> {
         let (mut plane, mut piece) = (*plane, self.largest_among(Self::is_open, plane, from, usize::MAX)?);
         for _ in 0..FITS {
@@ -154,7 +154,8 @@ impl<'a> Pieces<'a> {
         Some(taken + self.lend(&plane, piece))
     }
 
-    /// Lends a piece the free points beside it that lie on its plane, as far as windows reach. Gives how many.
+    /// Lends a piece the free points beside it that lie on its plane, as far as the windows of normals reach. Returns
+    /// how many.
     fn lend(&mut self, plane: &Plane3, piece: Vec<u32>) -> usize {
         let (number, mut rim, mut count) = (self.planes.len() as u16, piece, 0);
         // Corners of windows are twice as many steps away.

@@ -111,7 +111,8 @@ impl Ppdfdm {
         seeds
     }
 
-    /// Of the planes through three pixels of the disc that hold the seed the one with the most aligned pixels, fitted to them.
+    /// Draws planes through three pixels of the disc; of those the seed lies on, the one with the most aligned
+    /// pixels, fitted to these.
     fn plane_at(&self, background: &Background<'_>, at: usize) -> Option<Seed> {
         let disc = self.disc(background.affine, at);
         let mut random = Random::new((self.seed << 32) ^ at as u64);
@@ -172,7 +173,7 @@ impl Ppdfdm {
             let (_, region) = open.swap_remove(best);
             region.pixels.iter().for_each(|&at| is_free[at as usize] = false);
             found.push(region);
-            // Those that share pixels with it grow anew; the others stay as they are.
+            // Regions that share pixels with it grow anew; the others stay as they are.
             open.retain(|(number, region)| {
                 let is_touched = region.pixels.iter().any(|&at| !is_free[at as usize]);
                 if is_touched {

@@ -1,8 +1,8 @@
 //! Where a label image changes.
 //!
-//! In: a label image, 0 = none. Out: the pixels without a region beside one that has one, and the neighbours that have different
-//! ones. Most pixels are neither, so they are found as bits, 64 to a word: column u of a row is bit u % 64 of its word
-//! u / 64. What follows looks at these pixels alone.
+//! In: a label image, 0 = none. Out: the pixels without a region beside one that has one, and the pairs of neighbours
+//! that have different ones. Most pixels are neither, so these are found with bit masks, 64 pixels to a word: column
+//! u of a row is bit u % 64 of its word u / 64. Later steps look at the pixels found alone.
 
 use super::connectivity::Connectivity;
 use super::isa::RowMasks;
@@ -28,7 +28,7 @@ pub(crate) struct Boundary {
 }
 
 impl Boundary {
-    /// Looks at an image of `stride` columns, a multiple of [`WORD`], on as many threads.
+    /// Looks at an image of `stride` columns, a multiple of [`WORD`], on `threads` threads.
     pub(crate) fn find(&mut self, image: &[u16], stride: usize, threads: usize) {
         let (words, count) = (stride / WORD, image.len() / WORD);
         let Boundary { labelled, like_left, like_up, .. } = self;
@@ -61,7 +61,8 @@ impl Boundary {
         self.like_left.len() / self.words
     }
 
-    /// Calls `visit` with the labels of each two neighbours of some rows, or one row above, that have different ones.
+    /// Calls `visit` with the labels of each two neighbours that have different ones; the right or lower one lies in
+    /// the given rows.
     pub(crate) fn each(&self, rows: Range<usize>, image: &[u16], mut visit: impl FnMut(u16, u16)) {
         let (words, stride) = (self.words, self.words * WORD);
         for v in rows {

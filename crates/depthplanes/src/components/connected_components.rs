@@ -1,4 +1,6 @@
 //! Groups of a map, strip by strip on several threads.
+//!
+//! In: a map, and the rule for which neighbours are linked. Out: [`Groups`], the connected components.
 
 use super::connectivity::Connectivity;
 use super::kernels::{Compiles, Kernel, best};
@@ -35,12 +37,12 @@ impl Default for ConnectedComponents {
 }
 
 impl ConnectedComponents {
-    /// A grouper on the fastest kernel that this processor runs.
+    /// Connected components on the fastest kernel that this processor runs.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// A grouper on a certain kernel of `kernels`.
+    /// Connected components on a certain kernel of `kernels`.
     pub fn with_kernel(kernel: &'static Kernel) -> Self {
         ConnectedComponents { groups: Groups::new(kernel) }
     }
@@ -74,7 +76,7 @@ impl ConnectedComponents {
         groups
     }
 
-    /// Puts pairs of groups of the last map together.
+    /// Unites pairs of groups of the last map.
     pub(crate) fn unite(&mut self, pairs: &[[u32; 2]]) {
         if !pairs.is_empty() {
             self.groups.unite(pairs);
@@ -99,11 +101,11 @@ pub struct Groups {
     width: usize,
     height: usize,
     strips: Vec<Strip>,
-    /// For each provisional label, strip after strip, its parent while strips are joined, then its group.
+    /// For each provisional label, strip after strip: its parent while strips are joined, afterwards its group.
     group_of_label: Vec<u32>,
     /// The pixels of each group.
     sizes: Vec<u32>,
-    /// For each group one that it is united with, or itself.
+    /// For each group, another that it is united with, or itself.
     parents: Vec<u32>,
 }
 
@@ -213,8 +215,8 @@ impl Groups {
         });
     }
 
-    /// Masks of row `v`, column u in bit u % 64 of word u / 64: its valid pixels, and those with which runs start. Beyond
-    /// the map there are none.
+    /// Masks of row `v`, column u in bit u % 64 of word u / 64: its valid pixels, and the pixels where runs start.
+    /// Rows beyond the map have empty masks.
     pub(crate) fn masks(&self, v: usize) -> [&[u64]; 2] {
         match self.strips.get(v / self.strips[0].rows.len()) {
             Some(strip) if strip.rows.contains(&v) => {
@@ -225,7 +227,7 @@ impl Groups {
         }
     }
 
-    /// The group of the pixel in column `u`, row `v`, which has to be valid and no single left out.
+    /// The group of the pixel in column `u`, row `v`, which has to be valid and must not be a single that was left out.
     #[inline(always)]
     pub(crate) fn at(&self, [u, v]: [usize; 2]) -> u32 {
         let strip = match &self.strips[..] {

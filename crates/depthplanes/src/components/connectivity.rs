@@ -15,7 +15,7 @@ pub struct Connectivity<T> {
     /// ends; its high end for `f32`.
     #[cfg_attr(not(target_arch = "x86_64"), expect(dead_code, reason = "only the kernels of x86-64 ask for it"))]
     pub(crate) high_or_span: T,
-    /// Whether nothing was said of validity: 0, NaN and the infinities are missing, and that is all.
+    /// Whether the rule of validity is the default: 0, NaN and the infinities are missing, and nothing else.
     #[cfg_attr(not(target_arch = "x86_64"), expect(dead_code, reason = "only the kernels of x86-64 ask for it"))]
     pub(crate) is_default: bool,
 }

@@ -1,9 +1,9 @@
-//! Pieces of a region that are two steps apart are one plane.
+//! Bridges over gaps: pieces of a region that are two steps apart are one plane.
 //!
-//! In: the region image and its groups. Out: fewer groups. Groups are 4-connected, and where a sensor sees a surface at a
-//! grazing angle half of the pixels are missing: what was measured of a plane falls apart. A plane whose pixels are missing
-//! at random holds together by its four next pixels while 59 % are there, and by the twelve that are one or two steps
-//! off while 29 % are (the thresholds of site percolation on the square lattice).
+//! In: the region image and its groups. Out: fewer groups. Groups are 4-connected, and where a sensor sees a surface
+//! at a grazing angle half of the pixels are missing, so that what was measured of a plane falls apart. If its pixels
+//! are missing at random, a plane holds together by its pixels' four next neighbours while 59 % are there, and by the
+//! twelve that are one or two steps away while 29 % are (the thresholds of site percolation on the square lattice).
 
 use super::connected_components::{ConnectedComponents, Groups};
 use crate::util::bits::{ahead, behind, bits};
@@ -15,7 +15,7 @@ use std::ops::Range;
 /// Rows of a part of the map; the parts are the same on any number of threads.
 const ROWS: usize = 64;
 
-/// The steps to pixels that are two off, each with those that lie between.
+/// The steps to pixels two steps away, each with the pixels that lie between.
 const STEPS: [([isize; 2], [[isize; 2]; 2]); 4] =
     [([2, 0], [[1, 0], [1, 0]]), ([0, 2], [[0, 1], [0, 1]]), ([1, 1], [[1, 0], [0, 1]]), ([-1, 1], [[-1, 0], [0, 1]])];
 
@@ -23,7 +23,7 @@ const STEPS: [([isize; 2], [[isize; 2]; 2]); 4] =
 #[derive(Clone, Copy)]
 pub(crate) struct Measured<'a> {
     pub(crate) numbers: &'a [f32],
-    /// Numbers of a row, of which the last may lie beyond the map.
+    /// Numbers in a row; the last of them may lie beyond the map.
     pub(crate) stride: usize,
     pub(crate) height: usize,
 }
@@ -32,20 +32,20 @@ pub(crate) struct Measured<'a> {
 #[derive(Debug, Default)]
 pub(crate) struct Bridge {
     parts: Vec<RowPairs>,
-    /// Groups that are one.
+    /// Pairs of groups that belong to one plane.
     pairs: Vec<[u32; 2]>,
 }
 
 /// What is found in some rows of the map.
 #[derive(Debug, Default)]
 struct RowPairs {
-    /// Groups that are one.
+    /// Pairs of groups that belong to one plane.
     pairs: Vec<[u32; 2]>,
 }
 
 impl Bridge {
-    /// Joins the groups of a region image, on as many threads, over missing pixels only: what was measured between and lies
-    /// on no plane parts them.
+    /// Unites the groups of a region image, on `threads` threads, over missing pixels only: a measured pixel between
+    /// them that lies on no plane keeps them apart.
     pub(crate) fn join(&mut self, map: Measured<'_>, image: &[u16], grouper: &mut ConnectedComponents, threads: usize) {
         let Bridge { parts, pairs } = self;
         let groups = grouper.groups();
@@ -86,7 +86,7 @@ impl RowPairs {
         }
     }
 
-    /// Lists the groups of a pixel and of one two steps off, if they have one label and some pixel between is missing.
+    /// Lists the groups of a pixel and of one two steps away, if both have one label and some pixel between is missing.
     #[inline(always)]
     fn list_pair(
         &mut self,

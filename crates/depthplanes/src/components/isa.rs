@@ -1,4 +1,4 @@
-//! What an instruction set brings to grouping: a handful of operations on rows.
+//! What an instruction set provides for grouping: a handful of operations on rows.
 
 use super::connectivity::Connectivity;
 use crate::map::Pixel;
@@ -16,7 +16,7 @@ pub trait Isa {
     /// Masks of one row of floating-point values.
     fn masks_f32(row: &[f32], up: &[f32], rule: &Connectivity<f32>, out: RowMasks<'_>);
 
-    /// Adds two numbers of many words, the lowest first. What the last word carries out is lost.
+    /// Adds two numbers of many words, the lowest word first. A carry out of the last word is lost.
     #[inline(always)]
     fn add(a: &[u64], b: &[u64], sums: &mut [u64]) {
         let mut carry = false;
@@ -27,7 +27,7 @@ pub trait Isa {
         }
     }
 
-    /// Whether there are [`Isa::dense_labels`] and [`Isa::positions`], for rows of many runs.
+    /// Whether [`Isa::dense_labels`] and [`Isa::positions`] exist, for rows of many runs.
     const HAS_DENSE_LABELS: bool = false;
 
     /// Lists the positions of the set bits of two masks that have `count` each. The lists have room for
@@ -36,9 +36,9 @@ pub trait Isa {
         unreachable!("only called where HAS_DENSE_LABELS says so")
     }
 
-    /// Labels the runs of a row, many at a time; how many labels are new. `above[0]` stands before the
-    /// label of the first run above; `labels` begins with the row's first run; both have [`SLACK`] to
-    /// spare. `inherited` is memory for a label per pixel.
+    /// Labels the runs of a row, many at a time; returns how many labels are new. `above[0]` stands before the label
+    /// of the first run above; `labels` begins with the row's first run; both have [`SLACK`] to spare. `inherited` is
+    /// memory for a label per pixel.
     fn dense_labels(
         _links: &Links<'_>,
         _above: &[u32],
@@ -49,10 +49,9 @@ pub trait Isa {
         unreachable!("only called where HAS_DENSE_LABELS says so")
     }
 
-    /// Writes labels of part of a row: 0 where not valid, else the label of the pixel's run.
-    /// `labels[i]` belongs to the i-th run that starts in it, `labels[0]` to one that reaches into it;
-    /// there is room for a
-    /// label for each pixel and [`SLACK`] to spare.
+    /// Writes labels of part of a row: 0 where not valid, else the label of the pixel's run. `labels[i]` belongs to
+    /// the i-th run that starts in it, `labels[0]` to one that reaches into it; there is room for a label for each
+    /// pixel and [`SLACK`] to spare.
     fn paint_row(valid: &[u64], starts: &[u64], labels: &[u16], row: &mut [u16]);
 }
 
@@ -66,11 +65,11 @@ pub struct RowMasks<'a> {
     pub close_up: &'a mut [u64],
 }
 
-/// How the runs of a row hang together with those above.
+/// How the runs of a row touch those above.
 pub struct Links<'a> {
-    /// First contacts of runs, and the orphans.
+    /// One pixel of each run: its first contact, or its end if it is an orphan.
     pub marks: &'a [u64],
-    /// Last pixels of runs without a contact.
+    /// Last pixels of runs without a contact (orphans).
     pub orphans: &'a [u64],
     /// Last pixels of runs.
     pub ends: &'a [u64],

@@ -1,8 +1,8 @@
 //! Provisional labels for the runs of a block of rows, from where they touch the runs above.
 //!
-//! In: the block's links and run starts, and the labels of the row above. Out: a label for each run.
-//! Only the first pixel of each touching pair of runs matters. A run's first such contact hands it the
-//! label above without any search, for until then it has none; the few later ones unite two labels.
+//! In: the block's links and run starts, and the labels of the row above. Out: a label for each run. Only the first
+//! pixel of each touching pair of runs matters. At its first such contact a run takes the label above without any
+//! search, since it has none until then; each of the few later contacts unites two labels.
 
 use super::isa::{Isa, Links};
 use super::scratch::Scratch;
@@ -12,8 +12,8 @@ use crate::util::union_find::unite;
 use std::hint::select_unpredictable;
 use std::ops::Range;
 
-/// A row is dense if it has more runs than one in this many pixels. Set where labelling runs many at a
-/// time begins to pay; measured at 6, 10 and 16, which differ by at most 6 % on any of six frames.
+/// A row is dense if it has more runs than one in this many pixels. From there on labelling many runs at a time pays;
+/// measured at 6, 10 and 16, which differ by at most 6 % on any of six frames.
 const DENSE: usize = 6;
 
 /// Labels the runs of a block: dense rows one by one, the rows between them together.
@@ -102,7 +102,7 @@ fn sparse_labels(strip: &mut Strip, block: &Range<usize>, rows: &Range<usize>, n
     unite_later_contacts(strip, block, rows);
 }
 
-/// Unites the labels of runs that touch each other at other than a run's first contact.
+/// Unites labels where runs touch each other after a run's first contact.
 #[inline(always)]
 fn unite_later_contacts(strip: &mut Strip, block: &Range<usize>, rows: &Range<usize>) {
     let (words, count) = (strip.words, rows.len() * strip.words);

@@ -1,5 +1,7 @@
-//! From rows of a map to labelled runs: the masks of their links, block by block, the runs in these, and their labels;
-//! and how the labels of neighbouring strips become one.
+//! From rows of a map to labelled runs, and how the labels of neighbouring strips become one.
+//!
+//! In: the rows of a strip. Out: its labelled runs; block by block of rows come the masks of their links, the runs in
+//! these, and their labels.
 
 use super::connectivity::Connectivity;
 use super::isa::SLACK;
@@ -12,7 +14,7 @@ use crate::util::bits::next_bit;
 use crate::util::union_find::unite;
 use std::ops::Range;
 
-/// Labels a strip, block by block of rows: their links, their runs, their contacts, and a label for each.
+/// Labels a strip, block by block of rows: first its links, then its runs, their contacts, and a label for each run.
 #[inline(always)]
 pub(super) fn scan<I: Isa, T: Masked>(map: &DepthView<'_, T>, rule: &Connectivity<T>, strip: &mut Strip) {
     (strip.valid_pixels, strip.singles_left_out, strip.run_count) = (0, 0, 0);
@@ -26,7 +28,7 @@ pub(super) fn scan<I: Isa, T: Masked>(map: &DepthView<'_, T>, rule: &Connectivit
     }
 }
 
-/// Links of a block's rows, and of the row below, which tells pixels without any. Those of the block's
+/// Finds the links of a block's rows and of the row below, which show the pixels without any. Those of the block's
 /// first row are known from the block above.
 #[inline(always)]
 fn find_links<I: Isa, T: Masked>(
@@ -94,8 +96,8 @@ fn find_runs(strip: &mut Strip, block: &Range<usize>) {
     }
 }
 
-/// Takes pixels that are a run of their own and linked neither up nor down for missing: each is a
-/// group that nobody asked for, and noise makes many. Outer rows have links to other strips.
+/// Marks pixels as missing that are a run of their own and linked neither up nor down: each is a group that nobody
+/// asked for, and noise makes many. The strip's outer rows are left as they are, for they have links to other strips.
 #[inline(always)]
 fn leave_out_singles(strip: &mut Strip, block: &Range<usize>) {
     let words = strip.words;
@@ -130,7 +132,7 @@ pub(super) fn stitch<I: Isa, T: Masked>(
     let (starts, starts_above) = (&lower.starts[here.clone()], &upper.starts[there.clone()]);
     let (valid, valid_above) = (&lower.valid[here.clone()], &upper.valid[there.clone()]);
     let (here, there) = (here.start, there.start);
-    // The last row of the upper strip goes to where the row above a block stands.
+    // The last row of the upper strip is copied to where the row above a block stands.
     let Scratch { left, up, ends: unused, .. } = &mut lower.scratch;
     let (left_above, left) = left.split_at_mut(words);
     let (left, up) = (&mut left[..words], &mut up[words..][..words]);

@@ -25,7 +25,7 @@ pub(super) struct Scratch {
     pub(super) marks: Vec<u64>,
     /// First and last column of each run of a dense row.
     pub(super) columns: [Vec<u16>; 2],
-    /// Labels handed down in a dense row, in order of contacts.
+    /// Labels inherited in a dense row, in order of contacts.
     pub(super) inherited: Vec<u32>,
 }
 
@@ -43,13 +43,13 @@ impl Scratch {
         self.inherited.resize(width + SLACK, 0);
     }
 
-    /// Finds the pixels at which two runs first touch: linked upwards, and without a left neighbour in
-    /// the same two runs that is too. Of these the first of each run is marked; runs without any are
-    /// marked at their ends, as orphans.
+    /// Finds the pixels at which two runs first touch: those linked upwards whose left neighbour is not linked
+    /// upwards within the same two runs. Of these the first of each run is marked; runs without any are marked at
+    /// their ends, as orphans.
     ///
-    /// A run's pixels behind its first are a block of ones in `left`. Adding a one to a block carries
-    /// through to its end, so the ones that the sum clears lie behind the contact that was added. The rows
-    /// are one long number: a carry out of a row is lost in the next, whose first pixel has no left link.
+    /// A run's pixels after its first are a block of ones in `left`. Adding a one to a block carries through to its
+    /// end, so the ones that the sum clears lie behind the contact that was added. The rows form one long number: a
+    /// carry out of a row is lost in the next, whose first pixel has no left link.
     #[inline(always)]
     pub(super) fn find_contacts<I: Isa>(&mut self, count: usize, words: usize) {
         let (left_above, left) = (&self.left[..count], &self.left[words..][..count]);

@@ -79,7 +79,7 @@ impl Selection {
         Ok(&self.kept)
     }
 
-    /// Drops the kept groups that `keep` refuses; it is called in order of label. The others move up.
+    /// Drops the kept groups that `keep` refuses; it is called in order of label. The labels of the others move up.
     pub fn retain(&mut self, groups: &Groups, mut keep: impl FnMut(usize) -> bool) {
         let mut index = 0..;
         self.kept.retain(|_| keep(index.next().expect("an endless range")));

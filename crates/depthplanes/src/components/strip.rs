@@ -44,7 +44,7 @@ pub(super) struct Strip {
     pub(super) forest: Vec<u32>,
     /// Pixels of each provisional label.
     pub(super) sizes: Vec<u32>,
-    /// Provisional labels of the strips above.
+    /// How many provisional labels the strips above have.
     pub(super) first_label: usize,
     /// Valid pixels of the strip.
     pub(super) valid_pixels: usize,

@@ -66,7 +66,7 @@ impl Extraction {
         self.extract_united(map, image, wanted, |_| (), job, out)
     }
 
-    /// The same; `unite` may put groups together before they are counted.
+    /// As [`Extraction::extract`]; `unite` may put groups together before they are counted.
     ///
     /// # Errors
     /// [`crate::Error::TooManyPlanes`].
@@ -89,7 +89,7 @@ impl Extraction {
         job.done("select");
         let runs = selection.runs(groups);
         describer.tally(map, runs, 0, &job.sensor, job.threads);
-        // Of all planes, before some of them are joined.
+        // The noise as the residuals of all planes show it, before some of them are joined.
         let noise = noise.map(|noise| describer.as_residuals_show(noise, &job.sensor));
         let seen = Seen { sensor: &job.sensor, noise: noise.as_ref(), valid_pixels };
         describer.describe(map, runs, &seen, job.threads, &mut out.planes);

@@ -18,7 +18,7 @@ pub struct MethodInfo {
     pub about: &'static str,
     /// Its stages in order, as told to the observer of [`crate::Detector::detect_observed`].
     pub stages: &'static [&'static str],
-    /// Whether it tells surfaces that bend from planes and can report them.
+    /// Whether it tells curved surfaces from planes and can report them.
     pub tells_curved: bool,
     /// Its parameters, in the order of [`MethodInfo::of_values`].
     pub params: &'static [Param],
@@ -44,7 +44,7 @@ impl std::fmt::Debug for Configured {
     }
 }
 
-/// What [`crate::Detector::new`] takes: the parameters of a method. Nobody else can implement it.
+/// What [`crate::Detector::new`] takes: the parameters of a method. The trait is sealed.
 pub trait Parameters: sealed::Sealed {
     /// The method with these parameters.
     ///
@@ -66,7 +66,7 @@ impl Parameters for Configured {
     }
 }
 
-/// A detector with its parameters and its memory.
+/// A method with its parameters and its memory.
 pub(crate) trait Method: Send {
     /// Its row in [`super::METHODS`].
     fn info(&self) -> &'static MethodInfo;
@@ -77,8 +77,8 @@ pub(crate) trait Method: Send {
     /// [`Error::TooManyPlanes`]; [`Error::NotMetric`] for a parameter in metres without a camera.
     fn run(&mut self, map: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()>;
 
-    /// Says what its stages see at a pixel of the map, and what would give it a plane. A method that does not
-    /// know says only what it found.
+    /// Says what its stages see at a pixel of the map, and what would give it a plane. A method that cannot tell says
+    /// only what it found.
     ///
     /// # Errors
     /// As [`Method::run`].
@@ -96,7 +96,7 @@ pub(crate) struct Job<'a> {
     pub sensor: Sensor,
     /// Threads to use, 1 and up; the answer does not depend on it.
     pub threads: usize,
-    /// Whether surfaces that bend are wanted as well, of methods that tell them.
+    /// Whether curved surfaces are wanted as well, from methods that tell them apart.
     pub curved: bool,
     /// Joins coplanar planes, if that is wanted.
     pub joiner: Option<&'a mut Joiner>,

@@ -1,5 +1,5 @@
-//! What the parameters of `planar` and `mdl` say of a map's noise: its white part, which averages out, and of `planar`
-//! its smooth part as well, which does not within a surface.
+//! The parameters of `planar` and `mdl` that state a map's noise: its white part, which averages out over pixels, and
+//! for `planar` its smooth part as well, which does not average out within a surface.
 
 use super::parameter::{Param, ParamKind};
 use crate::noise::{SensorNoise, Space};
@@ -59,7 +59,7 @@ pub(crate) const NOISE_SCALE: Param = Param {
     source: None,
 };
 
-/// The noise that [`NOISE`] and [`NOISE_GROWTH`] state, or those of the smooth part; none if they are 0.
+/// The noise that [`NOISE`] and [`NOISE_GROWTH`] state, or that the parameters of the smooth part state; none if they are 0.
 pub(crate) fn stated(space: Space, noise: f64, growth: f64) -> Option<SensorNoise> {
     let is_stated = noise > 0.0 || (space != Space::Value && growth > 0.0);
     is_stated.then(|| of_kind(space, noise, growth))

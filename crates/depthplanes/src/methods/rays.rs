@@ -1,7 +1,7 @@
 //! Points, planes and the rays of pixels in space.
 //!
-//! In: what is known of the sensor, and q at places of the image. Out: points and planes. Where the camera is not known, it
-//! is [`Intrinsics::assumed`].
+//! In: what is known of the sensor, and q at places of the image. Out: points and planes. Where the camera is not
+//! known, [`Intrinsics::assumed`] stands in for it.
 
 use crate::camera::{Intrinsics, Measure};
 use crate::sensor::Sensor;
@@ -58,7 +58,7 @@ pub(crate) struct Rays {
 }
 
 impl Rays {
-    /// Of a sensor. Of disparity, inverse depth is known up to a factor only, which angles do not depend on.
+    /// The rays of a sensor. For disparity, inverse depth is known up to a factor only, on which angles do not depend.
     pub(crate) fn of(sensor: &Sensor, width: usize, height: usize) -> Self {
         let (slope, offset) = match sensor.measure {
             Measure::InverseDepth { slope, offset } => (slope, offset),
@@ -68,8 +68,8 @@ impl Rays {
         Rays { camera, slope, offset }
     }
 
-    /// The same, lengths being metres where unit and camera are known and median depths of the map where they are not;
-    /// `median` finds the median of q.
+    /// As [`Rays::of`], with lengths in metres where unit and camera are known, and in median depths of the map where
+    /// they are not; `median` finds the median of q.
     pub(crate) fn scaled(sensor: &Sensor, [width, height]: [usize; 2], median: impl FnOnce() -> f64) -> Self {
         let rays = Rays::of(sensor, width, height);
         if sensor.intrinsics.is_some() && sensor.measure != Measure::Disparity {
@@ -78,20 +78,20 @@ impl Rays {
         Rays { slope: 1.0 / median(), offset: 0.0, ..rays }
     }
 
-    /// Where the ray of a place meets q, behind the camera or at infinity too.
+    /// Where the ray of a place meets q; it may be behind the camera or at infinity.
     pub(crate) fn at(&self, [u, v]: [f64; 2], q: f64) -> Vec3 {
         let Intrinsics { fx, fy, cx, cy } = self.camera;
         let depth = 1.0 / (self.slope * q + self.offset);
         [(u - cx) / fx * depth, (v - cy) / fy * depth, depth]
     }
 
-    /// The point of a pixel, none at infinity.
+    /// The point of a pixel; none at or behind infinity.
     pub(crate) fn point(&self, place: [f64; 2], q: f64) -> Option<Vec3> {
         Some(self.at(place, q)).filter(|[_, _, depth]| *depth > 0.0 && depth.is_finite())
     }
 
-    /// n of the plane `n . point = 1` whose q changes by a gradient from column to column and from row to row and is
-    /// `q_at` a place: inverse depth is affine in u and v too.
+    /// The vector n of the plane `n . point = 1` whose q has that gradient along columns and rows and is `q_at` a
+    /// place: inverse depth is affine in u and v too.
     pub(crate) fn inverse(&self, [a, b]: [f64; 2], q_at: impl Fn(f64, f64) -> f64) -> Vec3 {
         let Intrinsics { fx, fy, cx, cy } = self.camera;
         [self.slope * a * fx, self.slope * b * fy, self.slope * q_at(cx, cy) + self.offset]

@@ -1,4 +1,4 @@
-//! What may happen to the records of planes after they were fitted: coplanar ones are joined, small ones dropped.
+//! What may happen to the records of planes after the fit: coplanar ones are joined, small ones dropped.
 //!
 //! In: selected groups and their records. Out: the records that remain, and the selection with their labels, which
 //! stay 1.. by decreasing pixel count.
@@ -37,8 +37,8 @@ impl<T: Pixel> Records<'_, T> {
         describer.describe(map, runs, seen, *threads, &mut out.planes);
     }
 
-    /// Drops planes of less than an area in square metres, and those without metres. One that reaches infinity has
-    /// no area and stays.
+    /// Drops planes of less than an area in square metres, and planes that are not known in metres. One that reaches
+    /// infinity has no area and stays.
     pub(crate) fn drop_smaller(&mut self, area_m2: f64, out: &mut Detection) {
         let is_large = |plane: &Plane| {
             let metric = plane.metric.as_ref();

@@ -17,7 +17,7 @@ pub(crate) struct Tries<'a> {
     pub(crate) map: AnyView<'a>,
     pub(crate) sensor: Sensor,
     pub(crate) at: [usize; 2],
-    /// Planes that it finds as it is.
+    /// How many planes it finds with these values.
     pub(crate) planes: usize,
 }
 
@@ -50,27 +50,27 @@ impl Tries<'_> {
     }
 }
 
-/// Fewest pixels of a surface that `min` is lowered for: to take in stray pixels would make a plane of each.
+/// Fewest pixels of a surface for which `min` is lowered: letting stray pixels in would make a plane of each.
 const STRAY: usize = 8;
 
-/// The changes of `min` that may let a surface of so many pixels in: little less than it has, then fewer.
+/// The changes of `min` that may let in a surface of `pixels` pixels: a value a little below that first, then smaller ones.
 pub(crate) fn smaller_min(pixels: usize) -> impl Iterator<Item = Change> {
     let shares = [0.97, 0.8, 0.6, 0.4, 0.2, 0.1, 0.0].into_iter().filter(move |_| pixels >= STRAY);
     shares.map(move |share| vec![("min", floored(share * pixels as f64))])
 }
 
-/// A whole number not above, of two digits.
+/// The value rounded down to a whole number of two significant digits.
 fn floored(value: f64) -> f64 {
     let unit = 10f64.powi((value.max(1.0).log10().floor() as i32 - 1).max(0));
     (value / unit).floor() * unit
 }
 
-/// Not below, of two digits.
+/// The value rounded up to two significant digits.
 pub(crate) fn rounded_up(value: f64) -> f64 {
     rounded(value, |number| (number - 1e-9).ceil())
 }
 
-/// Not above, of two digits.
+/// The value rounded down to two significant digits.
 pub(crate) fn rounded_down(value: f64) -> f64 {
     rounded(value, |number| (number + 1e-9).floor())
 }

@@ -97,7 +97,7 @@ impl Contingency {
                 Some((last, pixels)) if *last == pair => *pixels += 1,
                 _ => runs.push((pair, 1)),
             }
-            // Noise makes a run of each pixel; the memory is to follow the pairs that differ.
+            // Noise makes a run of each pixel; the memory should grow with the distinct pairs only.
             if runs.len() >= limit {
                 merge(&mut runs);
                 limit = FIRST_MERGE.max(2 * runs.len());
@@ -123,8 +123,8 @@ impl Contingency {
         self.overlaps.iter().map(|overlap| ((overlap.truth.label, overlap.prediction.label), overlap.pixels))
     }
 
-    /// The same with truth labels below `lowest` taken as "no plane". SegComp's and SynPEB's truth
-    /// marks shadows and noise by labels below 10.
+    /// This table with truth labels below `lowest` taken as "no plane". SegComp's and SynPEB's truth marks shadows
+    /// and noise by labels below 10.
     pub fn truth_from(&self, lowest: u16) -> Self {
         let plane = |label| if label < lowest { 0 } else { label };
         Self::of_counts(
@@ -137,7 +137,7 @@ impl Contingency {
         Self::of_counts(self.counts().filter(|((truth, _), _)| *truth != 0).collect())
     }
 
-    /// The same with truth and prediction exchanged.
+    /// This table with truth and prediction exchanged.
     pub fn swapped(&self) -> Self {
         Self::of_counts(self.counts().map(|((truth, prediction), pixels)| ((prediction, truth), pixels)).collect())
     }
@@ -172,7 +172,7 @@ impl Contingency {
         &self.overlaps
     }
 
-    /// Planes that share pixels, in the same order.
+    /// Planes that share pixels, in the order of [`Contingency::overlaps`].
     pub fn overlaps_of_planes(&self) -> impl Iterator<Item = &Overlap> {
         self.overlaps.iter().filter(|overlap| overlap.is_of_planes())
     }

@@ -1,8 +1,8 @@
 //! Planes' equations against known ones: errors of normals, of offsets, and of the angles between
 //! neighbouring planes.
 //!
-//! Which planes belong together is said by [`super::segcomp`] or [`super::evops`]; the equations
-//! are asked for by label, and planes without one are passed over.
+//! [`super::segcomp`] or [`super::evops`] say which planes belong together; the equations are asked for by label, and
+//! planes without one are passed over.
 
 use super::contingency::Match;
 use super::segcomp::SegComp;
@@ -65,9 +65,9 @@ pub fn adjacent(labels: &[u16], width: usize, height: usize) -> Result<Vec<(u16,
     Ok(pairs.into_iter().collect())
 }
 
-/// SegComp's angle error: for each pair of neighbouring truth planes ([`adjacent`]) that are both
-/// correct, the angle between the predicted planes against that between the true ones, degrees,
-/// 0..=180. In the order of the pairs, which are passed over where a plane is not known.
+/// SegComp's angle error: for each pair of neighbouring truth planes ([`adjacent`]) that are both correct, the
+/// difference between the angle of the predicted planes and that of the true ones, degrees, 0..=180. In the order of
+/// the pairs; pairs with a plane that is not known are passed over.
 ///
 /// Normals point to the camera ([`Hessian`]), so that convex and concave edges differ.
 pub fn angle_errors(

@@ -35,10 +35,10 @@ pub struct Evops {
     pub under_segmented: f64,
     /// `osr`: truth planes that overlap several predicted planes by [`IOU_PART`], as a share.
     pub over_segmented: f64,
-    /// Truth planes that overlap no predicted plane, or one that is theirs alone and not matched,
-    /// as a share.
+    /// Truth planes that overlap no predicted plane by [`IOU_PART`], or only one, which overlaps no other and is not
+    /// matched; as a share.
     pub missed: f64,
-    /// The same of predicted planes.
+    /// The same share of predicted planes.
     pub noise: f64,
 }
 
@@ -84,7 +84,7 @@ fn split_and_lost(table: &Contingency) -> (f64, f64) {
         *of_truth.entry(part.truth.label).or_insert(0) += 1;
         *of_prediction.entry(part.prediction.label).or_insert(0) += 1;
     }
-    // A lonely part that is no match has missed, unless its plane is split or joined: that is
+    // A single overlap that is no match counts as missed, unless one of its planes is split or joined: that is
     // another error, counted there.
     let holds = |part: &&&Overlap| {
         part.iou() >= IOU_FULL || of_truth[&part.truth.label] > 1 || of_prediction[&part.prediction.label] > 1

@@ -4,9 +4,9 @@
 //! and every other label is a surface; and which surfaces are one plane in space. Out: a class for each surface, and how
 //! many of the pixels that are not planar have a plane.
 //!
-//! Recorded frames are labelled by hand, and only where a person is sure. [`super::segcomp`] and [`super::evops`] would
-//! count planes on what nobody labelled as wrong. Here a predicted plane is held against labelled pixels only, and planes
-//! outside of them cost nothing. It does not tell how good a border is: 80 % of a surface will do.
+//! Recorded frames are labelled by hand, and only where a person is sure. [`super::segcomp`] and [`super::evops`]
+//! would count planes on what nobody labelled as wrong. Here a predicted plane is compared with labelled pixels only,
+//! and planes outside of them cost nothing. It does not tell how good a border is: 80 % of a surface will do.
 
 use super::contingency::{Contingency, Overlap, Region};
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,10 +22,10 @@ pub const NOT_PLANAR: u16 = u16::MAX;
 /// it: SegComp's common tolerance.
 const MOST: u64 = 80;
 
-/// Percent of a plane that lies on one surface where the plane is a piece of that surface.
+/// Percent of a plane that has to lie on a surface for the plane to be a piece of it.
 const MAINLY: u64 = 50;
 
-/// Percent of a surface from which a plane on it counts as a piece: less is a border or a speck.
+/// Percent of a surface that a plane has to cover to count as a piece: less is a border or a speck.
 const PIECE: u64 = 5;
 
 /// What became of a surface.
@@ -37,7 +37,7 @@ pub enum Fate {
     Correct,
     /// One plane covers at least 80 % of it, but more than 20 % of that plane's labelled pixels lie elsewhere.
     Merged,
-    /// No single plane covers 80 % of it, but those do together that have at least half of their labelled pixels on it.
+    /// No single plane covers 80 % of it, but the planes with at least half of their labelled pixels on it do together.
     Split,
     /// Everything else.
     Missed,
@@ -158,8 +158,8 @@ fn share(part: u64, whole: u64) -> Option<f64> {
 /// `coplanar` has groups of truth labels that are one plane in space, such as a floor on both sides of a table's leg: a
 /// detector may give them one label or several. A label may stand in several groups; labels that do not occur do no harm.
 ///
-/// Only labelled pixels count: those of [`UNLABELLED`] are of no surface and of no plane, those of [`NOT_PLANAR`] are of
-/// planes only, so that a plane that runs on over a ball is merged.
+/// Only labelled pixels count: those of [`UNLABELLED`] are of no surface and of no plane; those of [`NOT_PLANAR`] are
+/// of planes only, so that a plane that runs on over a ball counts as merged.
 ///
 /// ```
 /// use depthplanes::metrics::{Contingency, Fate, partial};
@@ -198,7 +198,7 @@ pub fn partial(table: &Contingency, coplanar: &[Vec<u16>]) -> Partial {
 /// What became of a surface by the planes on it; `on_same` tells how many pixels of a plane lie on it or on what is
 /// coplanar with it.
 fn fate(surface: Region, planes: &[&Overlap], on_same: impl Fn(u16) -> u64) -> Fate {
-    // Above one half there is one such plane at most.
+    // Above one half at most one plane covers so much.
     if let Some(whole) = planes.iter().find(|overlap| reaches(overlap.pixels, MOST, surface.pixels)) {
         let plane = whole.prediction;
         return if reaches(on_same(plane.label), MOST, plane.pixels) { Fate::Correct } else { Fate::Merged };
@@ -209,7 +209,7 @@ fn fate(surface: Region, planes: &[&Overlap], on_same: impl Fn(u16) -> u64) -> F
     if reaches(covered, MOST, surface.pixels) { Fate::Split } else { Fate::Missed }
 }
 
-/// The label itself and those of its groups, each once, but for pixels that are not planar.
+/// The label itself and those of its groups, each once, without [`NOT_PLANAR`].
 fn coplanar_with(label: u16, groups: &[Vec<u16>]) -> BTreeSet<u16> {
     let own = groups.iter().filter(|group| group.contains(&label)).flatten().copied();
     own.chain([label]).filter(|&label| label != NOT_PLANAR).collect()

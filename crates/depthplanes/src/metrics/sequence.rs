@@ -1,9 +1,9 @@
 //! How steady the planes of a sequence of frames are.
 //!
-//! In: label images of one size, frame after frame of a camera that moves little from one to the next. Out: how well each
-//! large plane of a frame is found again in the next, and how the number of planes varies. No truth is needed, so that any
-//! recording will do; but what is steadily wrong, such as a single plane for all pixels, is steady as well, and a fast
-//! camera lowers the overlaps of a perfect detector too. Hold figures of the same recording against each other only.
+//! In: label images of one size, frame after frame of a camera that moves little from one to the next. Out: how well
+//! each large plane of a frame is found again in the next, and how the number of planes varies. No truth is needed,
+//! so that any recording will do; but what is steadily wrong, such as a single plane for all pixels, is steady as
+//! well, and a fast camera lowers the overlaps of a perfect detector too. Compare figures of the same recording only.
 
 use super::contingency::Contingency;
 use super::evops::IOU_FULL;
@@ -70,7 +70,7 @@ impl Sequence {
         Ok(())
     }
 
-    /// The frame that would be next is not there: the one after it is compared with none.
+    /// Marks the next frame as absent: the one after it is compared with none.
     pub fn skip(&mut self) {
         self.last = None;
     }

@@ -1,12 +1,13 @@
 //! Whether a map was enlarged by repeating pixels.
 //!
-//! In: a map. Out: an [`Enlargement`]: which columns and rows the pixels of the source begin in. Enlarging to the nearest
-//! pixel makes steps that face the camera out of every slanted plane, and values that err alike in whole blocks.
+//! In: a map. Out: an [`Enlargement`], the first column and the first row of each source pixel; `None` for other
+//! maps. Enlarging to the nearest pixel turns every slanted plane into steps that face the camera, and gives whole
+//! blocks of pixels the same error.
 //!
-//! A map is enlarged where columns (and rows) differ from those before them at the borders of source pixels only, which
-//! are evenly spaced, two pixels and more apart, from the map's edge on. Planes that face the camera, constant maps and
-//! coarse disparities differ in few columns: it takes so many that by chance they would not all be borders. Where it is
-//! chance all the same nothing is lost, for pixels of one block are alike.
+//! In an enlarged map, columns (and rows) differ from those before them only at the borders of source pixels, which
+//! are evenly spaced from the map's edge on, two or more pixels apart. Planes that face the camera, constant maps and
+//! coarse disparities differ in few columns; so many have to differ that they would not all be borders by chance. A
+//! find by chance does no harm, for the pixels of one block are equal.
 
 use crate::map::{DepthView, Pixel};
 use crate::util::simd::vectorised;
@@ -16,23 +17,24 @@ mod tests;
 
 /// Smallest and largest factor.
 const FACTORS: [f64; 2] = [2.0, 8.0];
-/// Rows, and columns, that are looked at first.
+/// Rows that are compared first, and rows between two checks of all others.
 const FIRST: usize = 16;
-/// How unlikely it is by chance that the columns which differ are borders, bits, for columns and for rows. Some hundred
-/// factors are tried, each with two or three phases: of a thousand ordinary maps one may pass for columns, and of these
-/// one in a million for both.
+/// Least evidence, bits, that the columns which differ are not borders by chance; for columns and for rows. Some
+/// hundred factors are tried, each with two or three phases: of a thousand ordinary maps one may pass for columns,
+/// and of these one in a million for both.
 const CERTAIN: f64 = 10.0;
-/// The same for both together.
+/// Least evidence, bits, for columns and rows together.
 const CERTAIN_BOTH: f64 = 40.0;
 
-/// What source pixels became of a map that was enlarged.
+/// Where the pixels of the source begin in a map that was enlarged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enlargement<'a> {
     /// The first column of each column of the source, ascending from 0.
     pub columns: &'a [u32],
     /// The first row of each row of the source.
     pub rows: &'a [u32],
-    /// Columns and rows that a source pixel became, 2 to 8: source pixel i has its centre at `(i + 0.5) factor - 0.5`.
+    /// Columns and rows of the map for each source pixel, 2 to 8: source pixel i has its centre at `(i + 0.5) factor
+    /// - 0.5`.
     pub factor: [f64; 2],
 }
 
@@ -43,7 +45,7 @@ pub struct EnlargementFinder {
     rows: Axis,
 }
 
-/// Columns, or rows.
+/// The columns of a map, or its rows.
 #[derive(Debug, Default)]
 struct Axis {
     /// Whether a column differs from the one before.
@@ -53,7 +55,7 @@ struct Axis {
 }
 
 impl EnlargementFinder {
-    /// How a map was enlarged, both ways; `None` unless that is certain.
+    /// How a map was enlarged, along columns and along rows; `None` unless that is certain.
     ///
     /// ```
     /// use depthplanes::DepthView;
@@ -69,7 +71,7 @@ impl EnlargementFinder {
         let EnlargementFinder { columns, rows } = self;
         columns.start(map.width());
         rows.start(map.height());
-        // A few rows first: of ordinary maps the first tells.
+        // A few rows first: in ordinary maps the first of them tells.
         for v in (0..map.height()).step_by(map.height().div_ceil(FIRST)) {
             compare_columns(map, v, &mut columns.differs);
             if !columns.is_possible() {
@@ -91,7 +93,7 @@ impl EnlargementFinder {
         if !(columns.is_possible() && rows.is_possible()) {
             return None;
         }
-        // Where few columns differ several factors fit: rather a round one, or one that is that of the rows too.
+        // Where few columns differ, several factors fit: prefer a round one, or one that fits the rows too.
         let common = columns.largest(columns.whole().filter(|&factor| rows.fits(factor)));
         let factor_of = |axis: &Axis| axis.largest(round()).or(common).or_else(|| axis.largest(axis.whole()));
         let factor = [factor_of(columns)?, factor_of(rows)?];
@@ -104,7 +106,7 @@ impl EnlargementFinder {
     }
 }
 
-/// Marks the columns that differ in a row from the one before. What is missing is alike.
+/// Marks the columns whose pixel in a row differs from the one to its left. Two missing pixels are equal.
 #[inline(always)]
 fn compare_columns<T: Pixel>(map: &DepthView<'_, T>, v: usize, differs: &mut [bool]) {
     let validity = map.validity();
@@ -125,7 +127,7 @@ fn differ<T: Pixel>(map: &DepthView<'_, T>, [a, b]: [usize; 2]) -> bool {
     differ
 }
 
-/// Whole and half numbers, whether or not whole source pixels fill the map: it may have been cut off.
+/// Whole and half factors, whether or not whole source pixels fill the map: it may have been cropped.
 fn round() -> impl Iterator<Item = f64> {
     let [least, most] = FACTORS.map(|factor| 2 * factor as usize);
     (least..=most).map(|halves| 0.5 * halves as f64)
@@ -139,7 +141,7 @@ impl Axis {
         self.starts.reserve(length);
     }
 
-    /// Whether no two columns in a row differ from the ones before them.
+    /// Whether no two columns side by side both differ from the ones before them.
     fn is_possible(&self) -> bool {
         self.differs.windows(2).all(|pair| pair != [true, true])
     }
@@ -150,7 +152,7 @@ impl Axis {
         (length.div_ceil(most)..=length / least).map(move |pixels| length as f64 / pixels as f64)
     }
 
-    /// The largest of some factors that fit.
+    /// The largest of the given factors that fits.
     fn largest(&self, factors: impl Iterator<Item = f64>) -> Option<f64> {
         factors.filter(|&factor| self.fits(factor)).max_by(f64::total_cmp)
     }
@@ -168,13 +170,13 @@ impl Axis {
         self.starts.extend(borders.take_while(|&border| (border as usize) < length));
     }
 
-    /// How unlikely it is that all columns that differ are borders by chance, bits: one column in `factor` is a border.
+    /// Evidence, bits, that the columns which differ are not all borders by chance: one column in `factor` is a border.
     fn evidence(&self, factor: f64) -> f64 {
         self.differs.iter().filter(|differs| **differs).count() as f64 * factor.log2()
     }
 
-    /// The phase with which all columns that differ are `ceil(k factor + phase)`, above -1 to 0: 0 where a column is of the
-    /// source pixel of its left edge, -0.5 where it is of that of its centre.
+    /// The phase, above -1 and up to 0, for which all columns that differ are at `ceil(k factor + phase)`: 0 where a
+    /// column shows the source pixel under its left edge, -0.5 where it shows the one under its centre.
     fn phase(&self, factor: f64) -> Option<f64> {
         let [mut low, mut high] = [-1.0f64, 0.0f64];
         for (at, _) in self.differs.iter().enumerate().filter(|(_, differs)| **differs) {
@@ -186,10 +188,10 @@ impl Axis {
             }
         }
         let holds = |phase: &f64| low + TINY < *phase && *phase <= high + TINY;
-        // Off the numbers at which rounding would tell.
+        // Away from the numbers at which rounding would decide.
         Some([-0.5, 0.0].into_iter().find(holds).unwrap_or(high) - TINY)
     }
 }
 
-/// Far below what a source pixel's border is off of whole pixels, far above the rounding of numbers of pixels.
+/// Far below the distance of a source pixel's border from whole pixels, far above the rounding error of pixel counts.
 const TINY: f64 = 1e-6;

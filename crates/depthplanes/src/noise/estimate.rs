@@ -1,8 +1,8 @@
 //! How noisy a sensor is, from frames of it.
 //!
-//! In: maps. Out: the white part of the sensor's error and its smooth part, each a [`SensorNoise`], by what
-//! [`Scales`] sees of the maps' cells. What rounding to steps makes, D^2 / 12, is taken off the white part: rounding is
-//! part of the map, not of the sensor.
+//! In: maps. Out: the white part of the sensor's error and its smooth part, each a [`SensorNoise`], from what
+//! [`Scales`] measures on the maps' cells. The variance of rounding to steps D, D^2 / 12, is subtracted from the
+//! white part: rounding is part of the map, not of the sensor.
 
 use super::model::NoiseModel;
 use super::rounding::{Rounding, RoundingFinder};
@@ -17,7 +17,7 @@ use crate::map::{AnyView, DepthView, Pixel};
 use crate::sensor::Sensor;
 use crate::statistics::least_squares::Moments;
 
-/// Columns and rows that maps are filled up to a multiple of, as in `planar`.
+/// Maps are padded to a multiple of so many columns and rows, as in `planar`.
 pub(crate) const PADDED: [usize; 2] = [128, 16];
 
 /// A sensor's noise as frames of it show it.
@@ -28,26 +28,27 @@ pub struct Estimate {
     /// The white part, which differs from pixel to pixel: [`SensorNoise::Depth`] of depth maps, [`SensorNoise::Value`] of
     /// all others.
     pub noise: SensorNoise,
-    /// The white part without what rounding makes of it, which differs from `noise` where the sensor's own steps are longer
-    /// than those of the map's numbers: what `planar` has to be told, since it finds the rounding by itself. 0 where rounding makes more than a fiftieth of it.
+    /// The white part without the variance of rounding. It differs from `noise` where the sensor's own steps are
+    /// longer than those of the map's numbers. This is the one to give to `planar`, which finds the rounding by
+    /// itself. 0 where rounding makes more than a fiftieth of the variance.
     pub beside_rounding: SensorNoise,
-    /// The smooth part as means over 16 x 16 pixels show it, which neighbouring pixels share; of the same kind. What `planar`
-    /// has to be told: the longer waves it finds by itself.
+    /// The smooth part, which neighbouring pixels share, as means over 16 x 16 pixels show it; of the same kind. This
+    /// is the one to give to `planar`, which finds the longer waves by itself.
     pub smooth: SensorNoise,
-    /// The smooth part as means over up to 32 x 32 pixels show it where no edge runs through them: with the longer waves of
-    /// it, and without the scene's edges, which `smooth` holds.
+    /// The smooth part as means over up to 32 x 32 pixels show it where no edge runs through them: it includes the
+    /// longer waves, and excludes the scene's edges, which `smooth` includes.
     pub wide: SensorNoise,
     /// The steps that the values come in, map units, the finest of all frames; 0 for values that are not rounded.
     pub step: f64,
-    /// Blocks of 4 x 4 pixels that were held against those on either side, along rows and along columns.
+    /// Blocks of 4 x 4 pixels that were compared with their neighbours on either side, along rows and along columns.
     pub blocks: usize,
     /// What the maps' numbers mean; of several depth maps with different units, the last one's.
     pub measure: Measure,
-    /// Where all but a fortieth of the blocks lie on either side, low and high: 1/m for depth maps, map units for all
+    /// The range of the blocks, without a fortieth of them at either end: 1/m for depth maps, map units for all
     /// others.
     pub range: [f64; 2],
-    /// How well the rays of the pixels are known, pixels, one standard deviation; `None` where slanted surfaces err as
-    /// those do that face the camera.
+    /// Lateral error of a pixel's direction, pixels, one standard deviation; `None` where slanted surfaces scatter no
+    /// more than those that face the camera.
     pub ray: Option<f64>,
 }
 
@@ -90,9 +91,9 @@ pub struct Estimator {
     scales: Scales,
     steps: Steps,
     finder: RoundingFinder,
-    /// Of the newest frame.
+    /// The rounding of the newest frame.
     rounding: Option<Rounding>,
-    /// Of the frames so far.
+    /// The measure of the frames so far, and their finest step.
     seen: Option<(Measure, f64)>,
 }
 
@@ -112,11 +113,11 @@ impl Estimator {
         Ok(())
     }
 
-    /// Looks at a frame's cells; gives its steps.
+    /// Looks at a frame's cells; returns its step.
     fn look<T: Pixel>(&mut self, map: &DepthView<'_, T>, space: Space) -> f64 {
         let mut usual = 0.0;
         for (level, &side) in SIDES[..SUMMED].iter().enumerate() {
-            // As many as `planar` has, and so the same ones are looked at.
+            // As many cells as in `planar`, so that the same ones are looked at.
             let [columns, rows] = [(map.width(), PADDED[0]), (map.height(), PADDED[1])]
                 .map(|(length, of)| length.next_multiple_of(of) / side);
             let cells: Vec<Cell> = (0..columns * rows)
@@ -152,7 +153,7 @@ impl Estimator {
         Ok(Estimate { noise, beside_rounding, smooth, wide, step, blocks, measure, range, ray })
     }
 
-    /// The q that a fortieth of the blocks lie below and above.
+    /// The range of q without a fortieth of the blocks at either end.
     fn range(&mut self) -> [f64; 2] {
         let bends = &mut self.scales.bends[0];
         let few = bends.len() / 40;
@@ -160,7 +161,7 @@ impl Estimator {
     }
 }
 
-/// The white part without what rounding makes of it in the middle of a range of q.
+/// The white part without the variance of rounding, taken in the middle of a range of q.
 fn white(errors: &Errors, [low, high]: [f64; 2], space: Space, step: f64) -> SensorNoise {
     let q = (low + high) / 2.0;
     let (variance, rounding) = (errors.white.powi(2) * errors.variance(q, 0.0), step * space.unit(q));
@@ -168,12 +169,12 @@ fn white(errors: &Errors, [low, high]: [f64; 2], space: Space, step: f64) -> Sen
     errors.times(errors.white * own.sqrt(), space)
 }
 
-/// Share of the white part's variance that has to be left beside rounding. Where rounding makes more, what is left is not
-/// known as well, and one growth over the range does not say it.
+/// Share of the white part's variance that has to be left without rounding. Where rounding makes more of it, the rest
+/// is not well known, and does not grow over the range by one law.
 const LEFT: f64 = 0.98;
 
-/// The white part without what rounding makes of it, by what is left at both ends of a range of q: one growth over the
-/// range has what is left another than what is seen. None where rounding makes most of it.
+/// The white part without the variance of rounding, from what is left at both ends of a range of q: what is left
+/// grows over the range differently from what is seen. 0 where less than [`LEFT`] is left.
 fn beside_rounding(errors: &Errors, [low, high]: [f64; 2], space: Space, rounding: &Rounding) -> SensorNoise {
     let [at_low, at_high] = [low, high].map(|q| {
         let white = errors.white.powi(2) * errors.variance(q, 0.0);
@@ -188,8 +189,8 @@ fn beside_rounding(errors: &Errors, [low, high]: [f64; 2], space: Space, roundin
     Errors { constant, square, ..*errors }.times(1.0, space)
 }
 
-/// The noise of one map, for methods that hold single pixels against planes: the sensor's noise as stated, or else both parts of
-/// it as the map shows them, since a pixel is off by both; none where it shows nothing.
+/// The noise of one map, for methods that compare single pixels with planes: the sensor's noise as stated, or else
+/// both parts as the map shows them, since a pixel's error has both; 0 where the map shows nothing.
 pub(crate) fn noise_of_map<T: Pixel>(map: &DepthView<'_, T>, sensor: &Sensor) -> NoiseModel {
     let (measure, space) = (sensor.measure, Space::of(sensor.measure));
     let mut estimator = Estimator::default();
@@ -203,8 +204,8 @@ pub(crate) fn noise_of_map<T: Pixel>(map: &DepthView<'_, T>, sensor: &Sensor) ->
     stated.or_else(estimated).expect("an estimate is of the map's own kind")
 }
 
-/// A square of so many pixels a side, from its first (u, v), as far as it lies on the map. As in `planar`, tiles whose pixels
-/// lie on one line have no part in it.
+/// A square cell of `side` pixels whose first pixel is (u, v), as far as it lies on the map. As in `planar`, tiles
+/// whose pixels lie on one line are left out.
 fn cell<T: Pixel>(map: &DepthView<'_, T>, space: Space, [u, v]: [usize; 2], side: usize) -> Cell {
     let middle = (side as f64 - 1.0) / 2.0;
     let mut sums = Moments::default();
@@ -235,7 +236,7 @@ fn cell<T: Pixel>(map: &DepthView<'_, T>, space: Space, [u, v]: [usize; 2], side
     }
 }
 
-/// The valid pixels of a tile: columns and rows from its first pixel, which has that (u, v), and q.
+/// The valid pixels of the tile whose first pixel is (u, v): column and row counted from that pixel, and q.
 fn pixels<T: Pixel>(map: &DepthView<'_, T>, space: Space, [u, v]: [usize; 2]) -> impl Iterator<Item = [f64; 3]> {
     let [columns, rows] = [(u, map.width()), (v, map.height())].map(|(first, end)| first..end.min(first + SIDES[0]));
     let validity = map.validity();

@@ -1,11 +1,11 @@
-//! Numbers that are computed at a time.
+//! Numbers that are computed side by side.
 
-/// What is computed at a time: enough for the compiler to make vectors of it.
+/// How many are computed side by side: enough for the compiler to use vectors.
 pub(super) const LANES: usize = 32;
-/// One number of each.
+/// One number in each lane.
 pub(super) type Lanes = [f64; LANES];
 
-/// Up to so many numbers.
+/// Up to [`LANES`] numbers in lanes.
 #[inline(always)]
 pub(super) fn lanes(numbers: &[f32]) -> Lanes {
     let mut lanes = [0.0; LANES];

@@ -1,9 +1,9 @@
 //! What a sensor's error is at a given range.
 //!
 //! In: what is known of the sensor ([`SensorNoise`]), what the map's numbers mean, and the steps that they come in.
-//! Out: a [`NoiseModel`]: the variance of one pixel in the space where planes are affine ([`Space`]), inverse depth
-//! for depth maps, the value itself for all others. Structured light and stereo err by a constant there, time of
-//! flight by a constant in depth; both parts add. [`Estimator`] finds it out from frames.
+//! Out: a [`NoiseModel`], the variance of one pixel in the space where planes are affine ([`Space`]): inverse depth
+//! for depth maps, the value itself for all others. The error of structured light and stereo is constant there, that
+//! of time of flight is constant in depth; both parts add. [`Estimator`] estimates the noise from frames.
 
 mod enlarged;
 mod estimate;

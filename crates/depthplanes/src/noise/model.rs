@@ -1,4 +1,6 @@
-//! The variance of a pixel's q: what a map is held against.
+//! The variance of a pixel's q, which residuals are compared with.
+//!
+//! In: a sensor's noise, what the map's numbers mean, and their steps. Out: variances of q at q.
 
 use super::lanes::{LANES, Lanes, lanes};
 use super::rounding::{Rounding, steady};
@@ -16,19 +18,19 @@ pub struct NoiseModel {
     offset: f64,
     /// Steps of q.
     rounding: Rounding,
-    /// Whether the noise holds what rounding does on average.
+    /// Whether the noise is the scatter that a map shows, which includes the average effect of rounding.
     is_scatter: bool,
-    /// How well the ray of a pixel is known, pixels; 0 where nobody asks.
+    /// Lateral error of a pixel's direction, pixels; 0 where nobody asks.
     ray: f64,
-    /// The smooth part of the error, and what of the ray's part is smooth.
+    /// The smooth part of the error, and the smooth part of the lateral error.
     smooth: SensorNoise,
     smooth_ray: f64,
-    /// Whether the smooth part is what a map shows.
+    /// Whether the smooth part was estimated from the map.
     is_smooth_shown: bool,
 }
 
 /// What rounding to steps may do, in steps, to all pixels of a small patch at once: on a slow ramp they lie on one
-/// level, up to half a step off, and no average over them helps. (Over many steps it would be 1 / sqrt(12).)
+/// level, up to half a step off, and averaging does not help. (Over many steps it would be 1 / sqrt(12).)
 const ROUNDING: f64 = 0.5;
 
 impl NoiseModel {
@@ -63,57 +65,57 @@ impl NoiseModel {
         })
     }
 
-    /// The same, its noise being the scatter that a map shows, with what rounding does on average.
+    /// This model, its noise being the scatter that a map shows, which includes the average effect of rounding.
     pub(crate) fn of_scatter(self) -> Self {
         NoiseModel { is_scatter: true, ..self }
     }
 
-    /// The same for rays that are known to within `ray` pixels, one standard deviation.
+    /// This model with a lateral error of `ray` pixels in a pixel's direction, one standard deviation.
     pub(crate) fn with_ray(self, ray: f64) -> Self {
         NoiseModel { ray, ..self }
     }
 
-    /// The same with other steps of q.
+    /// This model with other steps of q.
     pub(crate) fn with_rounding(self, rounding: Rounding) -> Self {
         NoiseModel { rounding, ..self }
     }
 
-    /// The same with a smooth part, of a kind that suits the map as well.
+    /// This model with another smooth part, of a kind that suits the map as well.
     pub(crate) fn with_smooth(self, smooth: SensorNoise, smooth_ray: f64) -> Self {
         NoiseModel { smooth, smooth_ray, ..self }
     }
 
-    /// The same with so many times the smooth part.
+    /// This model with a smooth part `factor` times as large.
     pub(crate) fn with_smooth_times(self, factor: f64) -> Self {
         self.with_smooth(self.smooth.times(factor), self.smooth_ray * factor)
     }
 
-    /// The same, its smooth part being what a map shows.
+    /// This model, its smooth part being one that was estimated from the map.
     pub(crate) fn of_smooth_shown(self) -> Self {
         NoiseModel { is_smooth_shown: true, ..self }
     }
 
-    /// Whether the smooth part is what a map shows, and so as uncertain.
+    /// Whether the smooth part was estimated from the map, and so is uncertain.
     pub(crate) fn is_smooth_shown(&self) -> bool {
         self.is_smooth_shown
     }
 
-    /// Pixels of the ray whose error is smooth.
+    /// The smooth part of the lateral error, pixels.
     pub(crate) fn smooth_ray(&self) -> f64 {
         self.smooth_ray
     }
 
-    /// Variance of the smooth part of a pixel near q where a surface has that slope, `a^2 + b^2`.
+    /// Variance of the smooth part of a pixel near q on a surface whose squared slope `a^2 + b^2` is `slope`.
     pub(crate) fn smooth_variance(&self, q: f64, slope: f64) -> f64 {
         self.smooth_sigma(q).powi(2) + self.smooth_ray * self.smooth_ray * slope
     }
 
-    /// The same with a smooth part so many times as large.
+    /// This model with a smooth part `factor` times as large.
     pub(crate) fn smoother(self, factor: f64) -> Self {
         NoiseModel { smooth: self.smooth.times(factor), smooth_ray: factor * self.smooth_ray, ..self }
     }
 
-    /// Variance of what a pixel near q has for itself, rounding as if noise dithered it.
+    /// Variance of a pixel near q without the smooth part; rounding as if noise dithered it.
     pub(crate) fn own_variance(&self, q: f64) -> f64 {
         let (sensor, rounding) = (self.sensor_sigma(q).powi(2), self.step(q).powi(2) / 12.0);
         if self.is_scatter { sensor.max(rounding) } else { sensor + rounding }
@@ -124,42 +126,42 @@ impl NoiseModel {
         self.sigma_by(&self.smooth, q)
     }
 
-    /// How well the ray of a pixel is known, pixels, one standard deviation; it is no part of [`NoiseModel::variance`],
-    /// which knows no slope.
+    /// Lateral error of a pixel's direction, pixels, one standard deviation. It is no part of
+    /// [`NoiseModel::variance`], which knows no slope.
     pub(crate) fn ray(&self) -> f64 {
         self.ray
     }
 
-    /// Variance of one pixel's q, rounding taken at its worst.
+    /// Variance of one pixel's q. The part of rounding that noise does not dither is taken at its worst.
     #[inline]
     pub fn variance(&self, q: f64) -> f64 {
         self.with_sensor(q, self.sensor_sigma(q))
     }
 
-    /// Variance of one pixel's q where the sensor's own error has that standard deviation.
+    /// Variance of one pixel's q where the sensor's own error has the standard deviation `sensor`.
     #[inline(always)]
     fn with_sensor(&self, q: f64, sensor: f64) -> f64 {
         let square = self.step(q).powi(2);
         self.with_steps(q, sensor, square, self.steady(square, sensor * sensor))
     }
 
-    /// The same where a step has that square, so much of which is [`steady`].
+    /// As `with_sensor`, given the square of the step and the share of it that is [`steady`].
     #[inline(always)]
     fn with_steps(&self, q: f64, sensor: f64, square: f64, steady: f64) -> f64 {
         let single = 2e-7 * q; // single precision, in which q is kept
-        // What a map shows as scatter has what noise makes of the steps already.
+        // The scatter that a map shows includes what noise makes of the steps.
         let dithered = if self.is_scatter { 0.0 } else { (1.0 - steady) * square / 12.0 };
         sensor * sensor + steady * ROUNDING * ROUNDING * square + dithered + single * single
     }
 
-    /// [`steady`] for the sensor's own error of that variance.
+    /// [`steady`] where the sensor's own error has the variance `sensor`.
     #[inline(always)]
     fn steady(&self, square: f64, sensor: f64) -> f64 {
         steady(square, if self.is_scatter { sensor } else { sensor + square / 12.0 })
     }
 
-    /// Variances of single pixels of many cells of `side` pixels, of which q and slopes are given, and of the smooth part:
-    /// with what a rounding is that all of a cell share.
+    /// For many cells of `side` pixels, given q and slopes: the variances of single pixels, and those of the smooth
+    /// part with the rounding error that all pixels of a cell share.
     #[inline(always)]
     pub(crate) fn expect(&self, [q, a, b]: [&[f32]; 3], side: f64, [variances, smooth]: [&mut [f32]; 2]) {
         let slopes = a.chunks(LANES).zip(b.chunks(LANES));
@@ -187,20 +189,20 @@ impl NoiseModel {
         [variances, smooth]
     }
 
-    /// What the map's steps are in q, at q.
+    /// The step of the map's values in q, at q.
     pub(crate) fn step(&self, q: f64) -> f64 {
         self.rounding.step(q)
     }
 
-    /// Standard deviation of q by the noise as stated, rounding left out.
+    /// Standard deviation of q by the stated noise, without rounding.
     ///
-    /// An error of depth of `s` metres is `s p^2` in inverse depth p, and that over the slope in units of q.
+    /// An error of `s` metres in depth is `s p^2` in inverse depth p; divided by the slope it is in units of q.
     #[inline]
     pub fn sensor_sigma(&self, q: f64) -> f64 {
         self.sigma_by(&self.noise, q)
     }
 
-    /// The same of either part.
+    /// As [`NoiseModel::sensor_sigma`], for either part of the noise.
     #[inline(always)]
     fn sigma_by(&self, part: &SensorNoise, q: f64) -> f64 {
         match part {
@@ -213,7 +215,7 @@ impl NoiseModel {
         }
     }
 
-    /// The same at many q.
+    /// As `sigma_by`, at many q.
     #[inline(always)]
     fn sigmas(&self, part: &SensorNoise, q: &Lanes) -> Lanes {
         let mut sigmas = [0.0; LANES];
@@ -246,13 +248,12 @@ impl NoiseModel {
         sigma_m.is_finite().then_some(sigma_m)
     }
 
-    /// The variance that a pixel near q brings into the fit of a patch: that of the sensor, and that of rounding, which
-    /// counts more where pixels share its error.
+    /// The variance that a pixel near q brings into the fit of a patch: that of the sensor plus that of rounding,
+    /// which counts more where pixels share its error.
     ///
-    /// Rounding to steps D has the variance D^2 / 12. Of it the part `exp(-(2 pi sigma / D)^2)` follows the
-    /// signal, the rest is as good as white, since the sensor's noise sigma dithers it (Widrow and Kollar,
-    /// *Quantization Noise*, 2008: the first harmonic of the error's mean). The patch says how many pixels share
-    /// the part that follows the signal.
+    /// Rounding to steps D has the variance D^2 / 12. Its part `exp(-(2 pi sigma / D)^2)` follows the signal; the
+    /// rest is as good as white, since the sensor's noise sigma dithers it (Widrow and Kollar, *Quantization Noise*,
+    /// 2008: the first harmonic of the error's mean). The patch says how many pixels share the part that follows the signal.
     #[inline]
     pub fn variance_in(&self, patch: &Patch, q: f64) -> f64 {
         let (sigma, step) = (self.sensor_sigma(q), self.step(q));
@@ -276,22 +277,23 @@ impl NoiseModel {
 /// Pixels that one plane is fitted to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
-    /// What q changes by per column and per row.
+    /// Change of q per column and per row.
     pub gradient: [f64; 2],
-    /// Columns and rows of the box around them.
+    /// Columns and rows of the box around the pixels.
     pub extent: [f64; 2],
-    /// How many they are.
+    /// Number of pixels.
     pub pixels: f64,
 }
 
 impl Patch {
-    /// How many pixels count as one, since they share the error of rounding to steps: 1 if all err independently, all if
-    /// they lie on one level.
+    /// How many pixels count as one because they share the error of rounding: 1 if all err independently, all of them
+    /// if they lie on one level.
     ///
     /// Along an axis the error is a sawtooth of period P = step / gradient. A line of L pixels sums to its amplitude
-    /// times P / pi (the first harmonic, over the last period that is cut off), at most times L; to that of L
-    /// independent draws if the period is below two pixels. Lines within a period of each other sum alike, others
-    /// independently, as the border of a patch is ragged. Both axes bound the sum of the whole (our derivation).
+    /// times P / pi (the first harmonic, over the last period, which is cut off), and at most times L; if the period
+    /// is below two pixels, it sums as L independent draws do. Lines within a period of each other have equal sums,
+    /// others independent ones, as the border of a patch is ragged. Either axis bounds the sum of the whole (our
+    /// derivation).
     #[inline]
     fn alike(&self, step: f64) -> f64 {
         let period = self.gradient.map(|gradient| step / gradient.abs());

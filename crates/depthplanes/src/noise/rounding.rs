@@ -1,15 +1,15 @@
 //! What a map's values are rounded to.
 //!
-//! In: one map of any pixel type, and its space. Out: a [`Rounding`], the step of q as a function of q. Disparity stored
-//! as depth has steps that grow with the square of the range, time of flight has steps of depth, half precision doubles
-//! its step at powers of two: so the steps are looked for stretch by stretch of q. A value counts by how often it occurs,
-//! not by its type: what was rounded repeats, and the same numbers give the same steps as `u16` millimetres and as
-//! `f32` metres.
+//! In: one map of any pixel type, and its space. Out: a [`Rounding`], the step of q as a function of q. Disparity
+//! stored as depth has steps that grow with the square of the range, time of flight has steps of depth, half
+//! precision doubles its step at powers of two; so the step is looked for in each stretch of q by itself. A value
+//! counts by how often it occurs, not by its type: rounded values repeat, and the same numbers give the same steps as
+//! `u16` millimetres and as `f32` metres.
 //!
-//! Values of a thin sample leave gaps, scaled maps leave out values everywhere, and flying pixels lie between the
-//! steps. So it is a low quantile of the gaps between values that repeat, sharpened by the mean of the gaps near it. On
-//! planes that no row or column crosses every pixel of a line has one value: such repeats say nothing, and there the
-//! step is what all values are multiples of, which is 0 for true floats.
+//! A thin sample leaves gaps between values, scaled maps leave out values everywhere, and flying pixels lie between
+//! the steps. So the step is a low quantile of the gaps between values that repeat, sharpened by the mean of the gaps
+//! near it. On planes along whose rows or columns the value is constant, repeats say nothing; there the step is what
+//! all values are multiples of, which is 0 for true floats.
 
 use super::lanes::{LANES, Lanes};
 use super::space::Space;
@@ -25,32 +25,33 @@ mod units;
 use level::{LEAST, Level};
 use sample::{SHIFT, Sample};
 
-/// Entries of a table over q, eight an octave: eight octaves.
+/// Entries of a table over q: eight octaves of eight entries.
 const BINS: usize = 64;
-/// Single precision puts 1/0.8 below 1.25: values so close below an eighth of an octave belong to it.
+/// Units in the last place by which a value may lie below an eighth of an octave and belong to it: single precision
+/// puts 1/0.8 below 1.25.
 const NEAR: u32 = 16;
-/// Gaps at which a stretch is long enough.
+/// Fewest gaps of a stretch.
 const ENOUGH: usize = 12;
-/// Share of the pixels whose values may be left out, the rarest: flying pixels and interpolated ones. Of a sample in which
-/// values occur by chance it takes no more than a quarter of the values.
+/// Share of the pixels whose values may be left out, the rarest first: flying pixels and interpolated ones. In a
+/// sample in which values occur by chance, these are no more than a quarter of the values.
 const RARE: f64 = 0.1;
-/// A value repeats that starts so often in rows and in columns: on a map that is its own mirror image true floats occur
-/// twice.
+/// A value repeats if it starts at least so often in rows and in columns: on a map that is its own mirror image true
+/// floats occur twice.
 const REPEATS: usize = 3;
-/// Share of the pixels of a stretch whose values have to repeat: that of the quantile. On a level floor and a level wall
-/// which cross in one stretch, a step between every fifth of their lines makes so many.
+/// Share of the pixels of a stretch whose values have to repeat, equal to the quantile. Where a level floor and a
+/// level wall cross in one stretch, a step between every fifth of their lines makes so many.
 const REPEATED: f64 = QUANTILE;
-/// Times that values repeat on average where as good as none is missing, nor taken for a stray one.
+/// Mean number of repeats of a value at which hardly a value is missing or taken for a stray one.
 const DENSE: u32 = 8;
-/// Repeats that are not told apart.
+/// Higher numbers of repeats are not told apart.
 const OFTEN: usize = 32;
-/// The quantile of the gaps: below are fewer than a fifth, values between the steps; a fifth of the gaps is one step
-/// long while a fifth of the values is seen.
+/// The quantile of the gaps: fewer than a fifth of them are shorter than a step, next to values between the steps;
+/// and a fifth of the gaps is one step long as long as a fifth of the values is seen.
 const QUANTILE: f64 = 0.2;
 
-/// The share of rounding to steps of that square that follows the signal, where pixels scatter by that variance, instead of
-/// being dithered: none from a scatter of half a step on. (The exact share is an exponential of the ratio; this has no
-/// function that differs between machines.)
+/// The share of rounding that follows the signal instead of being dithered, for steps of that square and pixels that
+/// scatter with the variance `scatter`: none from a scatter of half a step on. (The exact share is an exponential of
+/// the ratio; this uses no function that differs between machines.)
 #[inline(always)]
 pub(crate) fn steady(square: f64, scatter: f64) -> f64 {
     if square > 0.0 { (4.0 / 3.0 * (1.0 - 4.0 * scatter / square)).clamp(0.0, 1.0) } else { 0.0 }
@@ -63,9 +64,9 @@ pub struct Rounding(Steps);
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a handful exist at a time, and being `Copy` keeps a noise model plain")]
 enum Steps {
-    /// Of the map's values, map units.
+    /// Steps of the map's values, map units, the same everywhere.
     Values { step: f64, space: Space },
-    /// Of q, by eighths of an octave from that of number `first` on.
+    /// Steps of q, one for each eighth of an octave, beginning with the one of number `first`.
     Table { first: u32, steps: [f32; BINS] },
 }
 
@@ -100,7 +101,7 @@ impl Rounding {
         out
     }
 
-    /// The variance that rounding brings into q: that of an error anywhere within half a step, alike.
+    /// The variance of q by rounding: that of a uniform error within half a step.
     #[inline]
     pub fn variance(&self, q: f64) -> f64 {
         let step = self.step(q);
@@ -114,7 +115,7 @@ fn bin(q: f32) -> u32 {
     ((q.to_bits() & 0x7fff_ffff) + NEAR) >> SHIFT
 }
 
-/// The entry for q of a table that begins with that eighth of an octave.
+/// The entry for q of a table that begins with the eighth of an octave of number `first`.
 #[inline(always)]
 fn place(q: f64, first: u32) -> usize {
     bin(q as f32).saturating_sub(first).min(BINS as u32 - 1) as usize
@@ -173,7 +174,7 @@ impl RoundingFinder {
     }
 }
 
-/// The steps over q of levels that are multiples of `unit`; `None` if nothing says more than that unit.
+/// The steps over q, from levels that are multiples of `unit`; `None` if they tell no more than that unit.
 fn table(levels: &[Level], gaps: &mut Vec<f64>, unit: f64, space: Space) -> Option<Rounding> {
     let first = bin(levels.last()?.q as f32).saturating_sub(BINS as u32 - 1);
     let all: u32 = levels.iter().map(|level| level.weight).sum();
@@ -211,7 +212,7 @@ fn table(levels: &[Level], gaps: &mut Vec<f64>, unit: f64, space: Space) -> Opti
     Some(Rounding(Steps::Table { first, steps }))
 }
 
-/// How many of the levels are one stretch: whole bins, with gaps enough in it and in what is left.
+/// How many of the levels make the next stretch: whole bins, with enough gaps in it and in the rest.
 fn length(levels: &[Level]) -> usize {
     let of = |at: usize| bin(levels[at].q as f32);
     let ends = |at: &usize| of(*at) != of(*at - 1);
@@ -224,13 +225,13 @@ fn length(levels: &[Level]) -> usize {
 enum Found {
     /// The step of q.
     Step(f64),
-    /// The lines of level surfaces are no closer.
+    /// An upper bound, from the lines of level surfaces.
     AtMost(f64),
     /// Values do not repeat.
     Nothing,
 }
 
-/// The step of q of the levels of a stretch that are multiples of `unit`.
+/// What the levels of a stretch, all multiples of `unit`, say of the step of q.
 fn look(levels: &[Level], gaps: &mut Vec<f64>, unit: f64, space: Space) -> Found {
     // Weight by how often a value repeats.
     let mut weights = [0; OFTEN + 1];
@@ -243,7 +244,7 @@ fn look(levels: &[Level], gaps: &mut Vec<f64>, unit: f64, space: Space) -> Found
     if !repeats && !is_share(on_lines, 1.0 - RARE) {
         return Found::Nothing;
     }
-    // How often a value has to occur that it is no stray one.
+    // How often a value has to occur not to be a stray one.
     let mut rarer = 0;
     let is_stray = |weight: &&u32| {
         rarer += **weight;
@@ -265,8 +266,9 @@ fn look(levels: &[Level], gaps: &mut Vec<f64>, unit: f64, space: Space) -> Found
     if repeats { Found::Step(sharpened(gaps, low, unit, is_dense)) } else { Found::AtMost(low) }
 }
 
-/// The mean of gaps that are as good as `low`: one and a half millimetres stored as whole ones are gaps of one and of
-/// two. Two steps are none, for a value may be missing, and where many are, one unit is what it is.
+/// The mean of the gaps near `low`: steps of one and a half millimetres stored as whole ones are gaps of one and of
+/// two. Gaps of two steps do not count, for a value may be missing between; and where many are missing, a gap of one
+/// unit is taken as one unit.
 fn sharpened(gaps: &[f64], low: f64, unit: f64, is_dense: bool) -> f64 {
     if low <= 1.5 * unit && !is_dense {
         return unit;
@@ -277,7 +279,7 @@ fn sharpened(gaps: &[f64], low: f64, unit: f64, is_dense: bool) -> f64 {
     sum / count
 }
 
-/// The step at q by those that were found: a line between their middles, and beyond the outermost a power of q.
+/// The step at q, interpolated linearly between the middles of stretches; beyond the outermost it follows a power of q.
 fn between(knots: &[Knot], q: f64) -> f64 {
     let after = knots.partition_point(|knot| knot.q < q);
     let before = after.checked_sub(1).map(|before| knots[before]);
@@ -289,8 +291,8 @@ fn between(knots: &[Knot], q: f64) -> f64 {
     }
 }
 
-/// The step at a place beyond the middle of the outermost stretch, by the power of q that leads to its neighbour's: 0 as of
-/// disparity, 1, or 2 as of depth. Taken without logarithms, which are not the same on every machine.
+/// The step at q beyond the middle of the outermost stretch, by the power of q that leads to the step of the next
+/// stretch: 0 as for disparity, 1, or 2 as for depth. It uses no logarithm, which differs between machines.
 fn beyond(outermost: &Knot, next: Option<&Knot>, q: f64) -> f64 {
     let Some(next) = next.filter(|next| next.step > 0.0 && outermost.step > 0.0) else { return outermost.step };
     let [low, high] = if next.q < outermost.q { [next, outermost] } else { [outermost, next] };

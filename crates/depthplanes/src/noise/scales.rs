@@ -1,9 +1,9 @@
-//! How far off a map's pixels are, and how far means over larger and larger cells of them, from the map itself.
+//! How far off a map's pixels are, and how far means over larger and larger cells are, estimated from the map itself.
 //!
-//! In: the means of neighbouring cells of [`SIDES`] pixels. Out: the parts of a pixel's error ([`Errors`]). The second
-//! difference of three neighbours' means is 0 on every plane, so its scatter is error. White error falls with a cell's
-//! side, smooth error does not; nor does what a scene's edges make, which the median passes over as long as they are less
-//! than half of what is looked at.
+//! In: the means of neighbouring cells of [`SIDES`] pixels. Out: the parts of a pixel's error ([`Errors`]). The
+//! second difference of three neighbouring means is 0 on every plane, so its scatter is error. White error falls with
+//! a cell's side, smooth error does not. Differences across the scene's edges do not fall either, but the median
+//! ignores them as long as they are less than half of what is looked at.
 
 use super::rounding::{Rounding, steady};
 use super::sensor_noise::SensorNoise;
@@ -13,52 +13,52 @@ use crate::util::simd::vectorised;
 
 /// Sides of the cells, pixels.
 pub(super) const SIDES: [usize; 4] = [4, 8, 16, 32];
-/// So many of them are summed over pixels; a cell of the last is put together of four.
+/// Cells of so many sides are summed over pixels; a cell of the last side is put together from four.
 pub(super) const SUMMED: usize = SIDES.len() - 1;
-/// The first of them whose cells are asked whether an edge runs through them.
+/// The first side whose cells are checked for an edge.
 const EDGES: usize = 2;
-/// Cells that are looked at for each side, at most about: a median of 4,000 is known to 2 %.
+/// Most cells that are looked at for each side, about: a median of 4,000 is known to 2 %.
 pub(crate) const SAMPLE: usize = 4096;
-/// Fewest second differences that tell a scale.
+/// Fewest second differences that give an estimate.
 pub(super) const FEW: usize = 16;
-/// Share of its usual pixels that a cell has to have.
+/// Share of its usual number of pixels that a cell has to have.
 const WHOLE: f32 = 0.75;
-/// Stretches of q that tell how the error grows over the range; of equal counts.
+/// Stretches of q, with equal counts, that tell how the error grows over the range.
 const STRETCHES: usize = 6;
-/// Ratios of constant error to error that grows with q^2 that are tried.
+/// Ratios of constant error to error that grows with q^2: how many are tried.
 const SHAPES: usize = 17;
 /// Median and lower quartile of the square of a standard normal number.
 const MEDIAN_OF_SQUARE: f64 = 0.454_936;
 const QUARTILE_OF_SQUARE: f64 = 0.101_531;
 /// Median of chi-squared of the 13 degrees of freedom of a tile.
 const MEDIAN_OF_TILE: f64 = 12.34;
-/// Largest ratio of the scatters of means over cells and over cells of half the side: correlated error does not grow with
-/// the side, what grows faster is the scene.
+/// Largest ratio of the scatter of cell means to that of means over cells of half the side: correlated error does not
+/// grow with the side; what grows faster is the scene.
 const GROWTH: f64 = 2.0;
-/// Steep tiles that tell the ray, at most.
+/// Most steep tiles that the lateral error is estimated from.
 const STEEP_ONES: usize = 512;
-/// Squared residuals of a cell without an edge, as a multiple of what they are in the mean: 1.5 deviations.
+/// Largest squared residuals of a cell without an edge, as a multiple of their mean: 1.5 deviations.
 const WITHOUT_EDGE: f64 = 2.25;
-/// One cell in so many has to be without an edge for planes to be held against what these show: where fewer are, the map is
-/// clutter, and theirs is chance.
+/// One cell in so many has to be without an edge for planes to be compared with what these cells show: where fewer
+/// are, the map is clutter and what they show is chance.
 const WHOLE_CELLS: usize = 3;
-/// A slope makes error if steep tiles scatter more than flat ones by this factor, in variance.
+/// A lateral error is estimated if steep tiles scatter more than flat ones by this factor, in variance.
 const STEEP: f64 = 1.25;
-/// The ray of a pixel is known to within so many pixels, at best and at worst: no camera is calibrated to better, and what
-/// is off by more is the next pixel's.
+/// Smallest and largest lateral error of a pixel's direction, pixels: no camera is calibrated to better, and an error
+/// of more is the next pixel's.
 pub(crate) const RAY: [f64; 2] = [0.05, 0.5];
 
-/// A second difference of means.
+/// A second difference of the means of three neighbouring cells.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Bend {
     /// q in the middle.
     pub(crate) q: f32,
     /// Squared slope there, a^2 + b^2.
     pub(crate) slope: f32,
-    /// The square of `(m[-1] - 2 m[0] + m[1]) / sqrt 6`: in the mean the variance of a cell's mean.
+    /// The square of `(m[-1] - 2 m[0] + m[1]) / sqrt 6`: its expected value is the variance of a cell's mean.
     pub(crate) square: f32,
-    /// Squared residuals of a cell's pixels about its own plane, over its degrees of freedom: the largest of the three; from
-    /// [`EDGES`] on.
+    /// Squared residuals of a cell's pixels about its own plane, over their degrees of freedom: the largest of the
+    /// three cells; for sides from [`EDGES`] on.
     pub(crate) residual: f32,
 }
 
@@ -73,7 +73,7 @@ pub(crate) struct Cells {
     pub(crate) usual: f32,
 }
 
-/// A cell: its pixels, its plane `q = a du + b dv + c` about its middle, and their squared residuals about it.
+/// A cell: its pixels, its plane `q = a du + b dv + c` about its middle, and the squared residuals of the pixels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cell {
     pub(crate) n: f32,
@@ -89,7 +89,7 @@ pub(crate) struct Scatter {
     pub(crate) square: f32,
 }
 
-/// A second difference of means on a slope, and the variance that it would have on level ground.
+/// A second difference of means on a slope, and the variance that it would have without the slope.
 #[derive(Clone, Copy, Debug)]
 struct Steep {
     square: f64,
@@ -97,7 +97,7 @@ struct Steep {
     flat: f64,
 }
 
-/// What is seen of a map or of several; reuses its memory.
+/// What was measured of a map or of several; reuses its memory.
 #[derive(Debug, Default)]
 pub(crate) struct Scales {
     /// For each of [`SIDES`].
@@ -109,22 +109,22 @@ pub(crate) struct Scales {
     steep: Vec<Steep>,
 }
 
-/// The parts of a pixel's error: standard deviations of q are multiples of one that is `constant + square q^2` where the
-/// surface faces the camera.
+/// The parts of a pixel's error. Standard deviations of q are multiples of `constant + square q^2` where the surface
+/// faces the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Errors {
-    /// Of means over tiles of 4 x 4 pixels.
+    /// Standard deviation of means over tiles of 4 x 4 pixels.
     pub(crate) constant: f64,
     pub(crate) square: f64,
-    /// Pixels: with a slope g the variance of these means is larger by `ray^2 g^2`.
+    /// Lateral error of a pixel's direction, pixels: on a slope g the variance of these means is larger by `ray^2 g^2`.
     pub(crate) ray: f64,
-    /// Standard deviation of single pixels about a tile's plane, and of means over 16 x 16, as multiples.
+    /// Standard deviations of single pixels about a tile's plane, and of means over 16 x 16, as multiples of that.
     pub(crate) white: f64,
     pub(crate) smooth: f64,
-    /// The larger of those of means over 16 x 16 and over 32 x 32 where no edge runs through a cell, if many are without.
+    /// The larger of the multiples for means over 16 x 16 and over 32 x 32 in cells without an edge, if many cells are.
     pub(crate) wide: f64,
-    /// That of all cells without an edge, be they few, with the waves that are longer than these, of which second differences see a part: so much more as it would
-    /// be at 32 times the root of 2 pixels, if it grew on as from 16 to 32.
+    /// As `wide`, from the cells without an edge, however few, and with the waves that are longer than these, of
+    /// which second differences see a part: extrapolated to 32 times the root of 2 pixels at the growth from 16 to 32.
     pub(crate) whole: f64,
     /// A q in the middle of those that were seen.
     pub(crate) q: f64,
@@ -143,7 +143,8 @@ impl Scales {
         reserve_to(&mut self.steep, STEEP_ONES);
     }
 
-    /// Looks at cells of the first [`SUMMED`] of [`SIDES`], and at fours of the last of these as cells of twice the side.
+    /// Looks at cells of the first [`SUMMED`] of [`SIDES`], and at each four of the last of these as a cell of twice
+    /// the side.
     #[inline(always)]
     pub(crate) fn look_at(&mut self, cells: Cells, cell: impl Fn(usize) -> Cell) {
         self.look_at_each(cells, &cell);
@@ -161,14 +162,14 @@ impl Scales {
         }
     }
 
-    /// Looks at cells that have most of their usual pixels, as have those on either side of them.
+    /// Looks at cells that have most of their usual pixels, as have their neighbours on either side.
     #[inline(always)]
     fn look_at_each(&mut self, cells: Cells, cell: impl Fn(usize) -> Cell) {
         let Cells { level, columns, rows, usual } = cells;
         // A map without a valid pixel has no usual tile.
         let least = (WHOLE * usual * (1 << (2 * level)) as f32).max(1.0);
         let stride = (columns * rows).div_ceil(SAMPLE).max(1);
-        // Rows in turn begin at other columns, so that no column is left out.
+        // Successive rows begin at different columns, so that no column is left out.
         for row in 1..rows.saturating_sub(1) {
             for column in (1 + row * 7 % stride..columns.saturating_sub(1)).step_by(stride) {
                 let at = row * columns + column;
@@ -213,7 +214,7 @@ impl Scales {
         let pixels = tiles.iter().map(|tile| (f64::from(tile.square) / facing(tile.q)) as f32);
         let at_most = if tiles.len() < FEW { 16.0 } else { median(numbers, pixels) * 13.0 / MEDIAN_OF_TILE };
         let shared = |bend: &Bend, side: f64| shared(bend, side, rounding, at_most * facing(bend.q));
-        // Of the slope: what the steeper half shows beyond the flatter one.
+        // The lateral error: what the steeper half shows beyond the flatter one.
         let half = fine.len() / 2;
         fine.select_nth_unstable_by(half, |a, b| a.slope.total_cmp(&b.slope));
         let (flat, steep) = fine.split_at(half);
@@ -242,7 +243,7 @@ impl Scales {
         };
         let of_middle = ratio(&larger[0], 8.0, 0.5, GROWTH);
         let smooth = ratio(&larger[1], 16.0, 0.5 * of_middle.min(0.5), GROWTH * of_middle);
-        // What of the scatter of tiles is not white: W^2 / 16 is known to a tenth.
+        // The part of the scatter of tiles that is not white: W^2 / 16 is known to a tenth.
         let of_tiles = (1.0 - 1.1 * white * white / 16.0).max(0.0).sqrt();
         let smooth = (smooth * of_tiles).max(white / 16.0);
         let expected = |bend: &Bend, side: f64| {
@@ -254,9 +255,10 @@ impl Scales {
     }
 }
 
-/// [`Errors::wide`] and [`Errors::whole`], by cells of the sides from [`EDGES`] on. A cell without an edge scatters about its
-/// plane by its white part and by what smaller cells showed to be smooth, at first `before`. `expected` gives variances: of a
-/// tile's mean, of the cell's mean if its error is as smooth, and of rounding.
+/// [`Errors::wide`] and [`Errors::whole`], from cells of the sides from [`EDGES`] on. The pixels of a cell without an
+/// edge scatter about its plane by the white part and by what smaller cells showed to be smooth; `before` is the
+/// latter for the first side. `expected` gives variances: of a tile's mean, of the cell's mean if its error is as
+/// smooth, and of rounding.
 #[inline(always)]
 fn long_waves(
     bends: &[Vec<Bend>],
@@ -301,7 +303,7 @@ impl Cell {
         self.squares / (self.n - 3.0).max(1.0)
     }
 
-    /// The cell that four of so many pixels a side are the quarters of, row by row; each counts as much as the others.
+    /// The cell whose quarters, row by row, are four cells of `side` pixels; each counts as much as the others.
     #[inline(always)]
     fn of_quarters(quarters: [Cell; 4], side: f32) -> Cell {
         let [mut n, mut a, mut b, mut c] = [0.0; 4];
@@ -312,7 +314,7 @@ impl Cell {
             c += quarter.abc[2] / 4.0;
         }
         let [q0, q1, q2, q3] = quarters.map(|cell| cell.abc[2]);
-        // Of the squares of a line's places a quarter is within its halves and the rest between them.
+        // Of the sum of squared places along a line, a quarter is within its halves and the rest between them.
         let slope = |within: f32, between: f32| 0.25 * within + 0.75 * between / (2.0 * side);
         let (a, b) = (slope(a, q1 + q3 - q0 - q2), slope(b, q2 + q3 - q0 - q1));
         let mut squares = 0.0;
@@ -326,7 +328,7 @@ impl Cell {
 }
 
 impl Errors {
-    /// Of a map that shows too little.
+    /// The errors of a map that shows too little.
     pub(crate) const NONE: Errors =
         Errors { constant: 0.0, square: 0.0, ray: 0.0, white: 4.0, smooth: 0.25, wide: 0.25, whole: 0.25, q: 1.0 };
 
@@ -337,7 +339,7 @@ impl Errors {
         sigma * sigma + self.ray * self.ray * slope
     }
 
-    /// So many times the errors of tiles' means.
+    /// `factor` times the error of a tile's mean, as the noise of a sensor.
     pub(crate) fn times(&self, factor: f64, space: Space) -> SensorNoise {
         match space {
             Space::InverseDepth { .. } => {
@@ -348,14 +350,14 @@ impl Errors {
     }
 }
 
-/// Variance of the mean over a tile that rounding and single precision make at least.
+/// The least variance of a tile's mean, by rounding and single precision.
 #[inline(always)]
 fn floor(q: f64, rounding: &Rounding) -> f64 {
     let single = 2e-7 * q;
     rounding.variance(q) / 16.0 + single * single
 }
 
-/// Variance that rounding makes of the mean over a cell of so many pixels a side, where a slope passes few steps in it.
+/// Variance that rounding gives to the mean over a cell of `side` pixels, where a slope crosses few steps in it.
 #[inline(always)]
 fn shared(bend: &Bend, side: f64, rounding: &Rounding, scatter: f64) -> f64 {
     let square = rounding.step(bend.q.into()).powi(2);
@@ -363,8 +365,8 @@ fn shared(bend: &Bend, side: f64, rounding: &Rounding, scatter: f64) -> f64 {
     steady(square, scatter) * square / 12.0 * level
 }
 
-/// Constant and square of the error, by its scatter in stretches of q: the ratio of both that leaves the least in the
-/// logarithm of the variance. And a q in the middle.
+/// Constant and square of the error, from its scatter in stretches of q: the ratio of the two that leaves the
+/// smallest residual in the logarithm of the variance. Also returns a q in the middle.
 #[inline(always)]
 fn shape(bends: &mut [Bend], numbers: &mut Vec<f32>, space: Space) -> ([f64; 2], f64) {
     let size = bends.len().div_ceil(STRETCHES);
@@ -404,7 +406,7 @@ fn shape(bends: &mut [Bend], numbers: &mut Vec<f32>, space: Space) -> ([f64; 2],
     (best.1, middle)
 }
 
-/// The ray that explains the scatter of steep tiles beside the error of flat ones, pixels, by halving.
+/// The lateral error, pixels, that explains the scatter of steep tiles beyond the error of flat ones; by bisection.
 #[inline(always)]
 fn ray_of(steep: &[Bend], memory: &mut Vec<Steep>, flat: impl Fn(&Bend) -> f64) -> f64 {
     let every = steep.len().div_ceil(STEEP_ONES);
@@ -433,21 +435,21 @@ fn median(memory: &mut Vec<f32>, numbers: impl Iterator<Item = f32>) -> f64 {
     middle_of(memory)
 }
 
-/// The one in the middle, of one or more.
+/// The middle one of the sorted numbers, of which there is at least one.
 #[inline(always)]
 fn middle_of(numbers: &mut [f32]) -> f64 {
     let at = numbers.len() / 2;
     (*numbers.select_nth_unstable_by(at, f32::total_cmp).1).into()
 }
 
-/// Bits of a number as a whole number in the order of [`f32::total_cmp`].
+/// The bits of a number as an integer that sorts as [`f32::total_cmp`] does.
 #[inline(always)]
 fn order(number: f32) -> i32 {
     let bits = number.to_bits() as i32;
     bits ^ (((bits >> 31) as u32) >> 1) as i32
 }
 
-/// A number in the order of pairs: the first by [`f32::total_cmp`], then the second.
+/// A pair as one integer that sorts by the first number ([`f32::total_cmp`]), then by the second.
 #[inline(always)]
 fn pair_order(first: f32, second: f32) -> i64 {
     let [first, second] = [first, second].map(|number| i64::from(order(number)));

@@ -26,7 +26,7 @@ pub enum SensorNoise {
 
 impl SensorNoise {
     /// Standard deviation of depth at range `depth_m`, metres; `None` for [`SensorNoise::Value`], which takes a
-    /// measure to become one ([`super::NoiseModel::depth_sigma_m`]).
+    /// measure to become depth ([`super::NoiseModel::depth_sigma_m`]).
     pub fn depth_sigma_m(&self, depth_m: f64) -> Option<f64> {
         match self {
             SensorNoise::Depth { base, growth } => Some(base + growth * depth_m * depth_m),
@@ -35,7 +35,7 @@ impl SensorNoise {
         }
     }
 
-    /// The same, its standard deviations so many times as large.
+    /// This noise with standard deviations `factor` times as large.
     pub(crate) fn times(self, factor: f64) -> Self {
         match self {
             SensorNoise::Depth { base, growth } => SensorNoise::Depth { base: factor * base, growth: factor * growth },

@@ -2,7 +2,7 @@
 
 use crate::camera::Measure;
 
-/// Largest q that counts as measured: sums of its squares are numbers of single precision. As depth it is a femtometre.
+/// Largest q that counts as measured: sums of its squares fit single precision. As depth it is a femtometre.
 pub(crate) const LARGEST_Q: f32 = 1e15;
 
 /// The space where planes of a map are affine, `q = a u + b v + c`.
@@ -26,7 +26,7 @@ impl Space {
         }
     }
 
-    /// q of what is infinitely far. Disparity whose offset nobody states is taken to have none.
+    /// q of a point infinitely far away. Disparity whose offset nobody states is taken to have none.
     pub(crate) fn at_infinity(measure: Measure) -> f64 {
         match measure {
             Measure::InverseDepth { slope, offset } => -offset / slope,
@@ -43,7 +43,7 @@ impl Space {
         }
     }
 
-    /// What a difference of one map unit is in q, at q: |dq / dvalue|.
+    /// How much q changes for one map unit, at q: |dq / dvalue|.
     #[inline]
     pub fn unit(self, q: f64) -> f64 {
         match self {

@@ -12,8 +12,8 @@ const SAMPLE: usize = 1 << 15;
 const GROUP: usize = 32;
 /// Longest step that is told from longer ones, map units.
 const FAR: usize = 1023;
-/// Fewest distances that tell a step. Flat surfaces on which every pixel has one value make fewer, and theirs are jumps in
-/// depth.
+/// Fewest distances that tell a step. Flat surfaces on which every pixel has one value make fewer distances, and
+/// these are jumps in depth.
 const LEAST: u32 = 8;
 
 /// Finds steps; reuses its memory.
@@ -67,7 +67,7 @@ impl Steps {
         seen[0] = false;
     }
 
-    /// How often neighbouring values that occur are so far apart.
+    /// For each distance, how often neighbouring values that occur are so far apart.
     fn steps(&self) -> [u32; FAR + 1] {
         let mut steps = [0; FAR + 1];
         let mut last = None;

@@ -1,7 +1,7 @@
 //! A sensor's noise as a table.
 //!
-//! In: up to [`MAX_ROWS`] pairs of range and standard deviation. Out: the standard deviation at any range. Of a fixed
-//! size, so that a sensor stays a plain value that can be copied and compared.
+//! In: up to [`MAX_ROWS`] pairs of range and standard deviation. Out: the standard deviation at any range. Its size
+//! is fixed, so that a sensor stays a plain value that can be copied and compared.
 
 use crate::error::{Error, Result};
 
@@ -70,7 +70,7 @@ impl NoiseTable {
         &self.rows[..self.count]
     }
 
-    /// The same, its standard deviations so many times as large.
+    /// The table with standard deviations `factor` times as large.
     pub(super) fn times(mut self, factor: f64) -> Self {
         self.rows.iter_mut().for_each(|[_, sigma]| *sigma *= factor);
         self

@@ -27,7 +27,7 @@ pub(super) struct Segment {
 }
 
 impl Segment {
-    /// The two corners differ.
+    /// The two corners must differ.
     pub(super) fn new(a: Corner, b: Corner) -> Self {
         let (start, end) = (a.map(f64::from), b.map(f64::from));
         let way = [end[0] - start[0], end[1] - start[1]];

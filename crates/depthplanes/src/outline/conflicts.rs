@@ -1,10 +1,9 @@
-//! Chords of a plane's rings that may not stay: those that meet others, and those that pass over a
-//! whole ring.
+//! Chords of a plane's rings that may not stay: those that meet others, and those that pass over a whole ring.
 //!
-//! In: the chords. Out: which of those that stand for more than one crack have to be split. Two
-//! chords may share an end and nothing else. Where no chords meet, rings can lie differently to each
-//! other only if a chord passed over one of them: the winding numbers of a ring's point can change
-//! only if the point lies between a chord and the corners that it stands for.
+//! In: the chords. Out: which of those that stand for more than one crack have to be split. Two chords may share an
+//! end and nothing else. As long as no chords meet, a ring can change sides of another only if a chord passed over
+//! it: the winding numbers of a ring's point can change only if the point lies between a chord and the corners that
+//! it stands for.
 
 use super::chord::{Cycle, Segment};
 use super::corner::{Corner, turn};
@@ -58,7 +57,7 @@ impl Chord {
             Some((shared, p, _, q)) => p == q || (turn(shared, p, q) == 0 && is_ahead(shared, p, q)),
             None => {
                 let parted = |a, b, c, d| turn(a, b, c).signum() * turn(a, b, d).signum() > 0;
-                !parted(a, b, c, d) && !parted(c, d, a, b) // their boxes overlap, which settles those in line
+                !parted(a, b, c, d) && !parted(c, d, a, b) // their boxes overlap, which decides for collinear ones
             }
         }
     }
@@ -80,7 +79,7 @@ impl Chord {
     }
 }
 
-/// Whether p and q, in line with a corner, lie on the same side of it.
+/// Whether p and q, collinear with a corner, lie on the same side of it.
 fn is_ahead(from: Corner, p: Corner, q: Corner) -> bool {
     let way = |to: Corner, axis: usize| i64::from(to[axis]) - i64::from(from[axis]);
     way(p, 0) * way(q, 0) + way(p, 1) * way(q, 1) > 0

@@ -1,6 +1,6 @@
 //! Outlines of planes: polygons with holes, convex hulls and rectangles of least area.
 //!
-//! In: a [`Detection`], and the camera if it is known. Out: [`Outlines`], in pixels, and in metres
+//! In: a [`crate::Detection`], and the camera if it is known. Out: [`Outlines`], in pixels, and in metres
 //! where a plane is metric; those points lie on the fitted plane, whatever noise the map has.
 //!
 //! `labels -> trace -> simplify -> hull -> Outlines`. Rings run along the cracks between pixels, so

@@ -92,7 +92,7 @@ impl Outlines {
         self.planes.push(record);
     }
 
-    /// The plane in metres, if each corner since `first` lies before infinity on it.
+    /// The plane in metres, if each corner since `first` lies at a finite distance on it.
     fn surface(&self, plane: &Plane, first: Ends) -> Option<Hessian> {
         let surface = plane.metric.filter(|metric| metric.area_m2.is_some())?.plane;
         let camera = self.camera?;
@@ -209,8 +209,8 @@ impl<'a> Ring<'a> {
     }
 }
 
-/// Rings are traced counter-clockwise on the picture; where that is mirrored, they turn round, but
-/// for their first corner.
+/// Rings are traced counter-clockwise on the picture; where the picture is mirrored, they are reversed, but for their
+/// first corner.
 fn face_camera(ring: &mut [Corner], camera: Option<Intrinsics>) {
     let mirrored = camera.is_some_and(|camera| camera.fx * camera.fy < 0.0);
     if let (true, [_, others @ ..]) = (mirrored, ring) {

@@ -1,10 +1,10 @@
 //! Which corners of a plane's rings stay, by Douglas and Peucker.
 //!
-//! In: the rings of one plane, a tolerance. Out: marks on the corners that stay. The ends to begin
-//! with are a ring's extreme corners along the diagonals, four of any ring, which also keep it from
-//! turning inside out; and where rings touch, the corners before and after as well, so that they
-//! leave that point as they did. Chords of the plane that meet, or that pass over another ring, are
-//! split until there is none. That ends at the latest with the rings as they were.
+//! In: the rings of one plane, a tolerance. Out: marks on the corners that stay. A ring's extreme corners along the
+//! diagonals stay from the beginning, four of any ring, which also keep it from turning inside out. Where rings
+//! touch, the corners before and after stay as well, so that the rings leave that point as they did. Chords of the
+//! plane that meet, or that pass over another ring, are split until there is none. That ends at the latest with the
+//! rings as they were.
 
 use super::chord::{Cycle, Segment};
 use super::conflicts::{Chord, Conflicts};
@@ -27,7 +27,7 @@ impl Simplifier {
         Simplifier { tolerance, ends, pending, chords, conflicts: Conflicts::default() }
     }
 
-    /// Marks the corners that stay. `keep` marks those where rings touch when it comes.
+    /// Marks the corners that stay. On entry `keep` marks those where rings touch.
     pub(super) fn simplify(&mut self, rings: &[TracedRing], corners: &[Corner], keep: &mut [bool]) {
         if self.tolerance == 0.0 {
             rings.iter().for_each(|ring| keep[ring.range()].fill(true));
@@ -86,7 +86,7 @@ impl Simplifier {
     }
 }
 
-/// The places of the corners that stay, and at the end the first again, a turn later.
+/// The places of the corners that stay, and at the end the first one again, a round later.
 fn chords(keep: &[bool], ends: &mut Vec<usize>) {
     ends.clear();
     ends.extend((0..keep.len()).filter(|&at| keep[at]));

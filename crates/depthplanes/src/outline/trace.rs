@@ -3,10 +3,10 @@
 //! In: a label image. Out: rings of corners, counter-clockwise on the picture around the plane's
 //! pixels and clockwise around holes in them, grouped by plane, each outer ring followed by its holes.
 //!
-//! A ring is followed from the first crack, in raster order, that no ring has passed. Pixels that
-//! touch at a corner only are not neighbours, so that the way turns to the pixel it came along. A
-//! ring that comes to a point for the second time encloses background in between; that part is cut
-//! off as a ring of its own, so that every ring is a simple polygon.
+//! A ring is followed from the first crack, in raster order, that no ring has passed. Pixels that touch at a corner
+//! only are not neighbours, so that the path turns to the pixel it came along. A ring that comes to a point for the
+//! second time encloses background in between; that part is cut off as a ring of its own, so that every ring is a
+//! simple polygon.
 
 use super::corner::Corner;
 use crate::detection::Detection;
@@ -57,7 +57,7 @@ pub(super) struct Tracer {
 struct Path {
     corners: Vec<Corner>,
     touches: Vec<bool>,
-    /// For each corner of the map, its place in `corners` plus 1 if the way may come here again.
+    /// For each corner of the map, its place in `corners` plus 1 if the path may come here again.
     place: Vec<u32>,
     width: usize,
 }
@@ -191,7 +191,7 @@ impl Tracer {
         self.path.touches.clear();
     }
 
-    /// Takes the way since a place as a ring; its first corner stays on the way.
+    /// Takes the path since a place as a ring; its first corner stays on the path.
     fn finish(&mut self, label: u16, polygon: u32, place: usize) {
         let first = self.corners.len();
         self.corners.extend_from_slice(&self.path.corners[place..]);
@@ -216,7 +216,7 @@ impl Path {
         (self.place[self.index(corner)] as usize).checked_sub(1)
     }
 
-    /// Drops the way after a place; the place itself will not be come to again.
+    /// Drops the path after a place; the place itself will not be reached again.
     fn forget(&mut self, place: usize) {
         for at in place..self.corners.len() {
             if self.touches[at] {

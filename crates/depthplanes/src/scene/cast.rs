@@ -90,7 +90,7 @@ impl Caster {
     #[inline]
     pub(super) fn blocked(&self, [u, v]: [f64; 2], q: f64, row: &[&Target]) -> bool {
         let ray = self.intrinsics.ray(u, v);
-        // A millionth of the depth, so that a point does not shade itself.
+        // Nearer by a millionth of the depth, so that a point does not shade itself.
         let before = q * (1.0 + 1e-6);
         row.iter().any(|target| target.bounds.column(u) && target.shape.meet(ray, before).is_some())
     }

@@ -1,7 +1,7 @@
 //! The ready scenes, by name.
 //!
-//! A row of [`SCENES`] makes a scene available to every [`super::Spec`]. Each is built from a seed:
-//! fixed scenes move their furniture a little, made-up ones are drawn anew.
+//! A row of [`SCENES`] makes a scene available to every [`super::Spec`]. Each is built from a seed: fixed scenes move
+//! their furniture a little, random ones are drawn anew.
 
 use super::clutter;
 use super::exact::unit;

@@ -1,5 +1,5 @@
-//! Made-up scenes with exact truth: for a first picture, for tests and benches, and for measuring
-//! detectors where every plane is known.
+//! Synthetic scenes with exact truth: for a first picture, for tests and benches, and for measuring detectors where
+//! every plane is known.
 //!
 //! In: a [`Scene`] of facets, discs, balls and cylinders, a placed [`Camera`], a [`SensorModel`] and a seed.
 //! Out: a [`SceneFrame`]: the map that such a sensor would deliver, and the [`Truth`] behind it.

@@ -7,17 +7,17 @@ use super::staged::Staged;
 use super::surfaces::{Place, Scene};
 use crate::util::random::Random;
 
-/// A rectangle in a wall: along the wall from, to; above the floor from, to.
+/// A rectangle in a wall: from and to along the wall, then from and to above the floor.
 type Opening = [f64; 4];
 
-/// A place near another, as far as somebody might have pushed it.
+/// A place near another, within what somebody might have pushed it.
 fn moved(place: Place, random: &mut Random) -> Place {
     let Place { origin_m: [x, y, z], yaw_deg } = place;
     let nudge = [random.between(-0.05, 0.05), random.between(-0.05, 0.05)];
     Place { origin_m: [x + nudge[0], y + nudge[1], z], yaw_deg: yaw_deg + random.between(-5.0, 5.0) }
 }
 
-/// A wall along the place's x axis with openings, in order of x and apart: one plane, many parts.
+/// A wall along the place's x axis; its openings come in order of x and do not touch. One plane, many parts.
 fn wall(scene: &mut Scene, place: Place, [from, to]: [f64; 2], height: f64, openings: &[Opening]) {
     let mut parts = Vec::new();
     let mut part = |[x0, x1, z0, z1]: Opening| {

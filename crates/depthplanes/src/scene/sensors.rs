@@ -145,9 +145,8 @@ impl SensorModel {
         }
     }
 
-    /// How far off its pixels are at a depth in metres (more than 0), inside surfaces and within its
-    /// range, as the model states it: for tests of what estimates noise. Steps of disparity maps are
-    /// those of a picture of 640 x 480.
+    /// How far off its pixels are at a depth in metres (more than 0), inside surfaces and within its range, as the
+    /// model states it; for tests of noise estimates. Steps of disparity maps are those of a picture of 640 x 480.
     ///
     /// ```
     /// use depthplanes::scene::SensorModel;
@@ -203,8 +202,8 @@ impl SensorModel {
     }
 }
 
-/// A quarter of a pixel per unit; 0 for what the other camera does not see, what 8 bits cannot
-/// hold (nearer than 0.91 m at 640 columns) and what is further than half a unit.
+/// A quarter of a pixel per unit; 0 for what the other camera does not see, what 8 bits cannot hold (nearer than 0.91
+/// m at 640 columns) and disparities below half a unit.
 fn disparities(exposure: &Exposure<'_>) -> Vec<u8> {
     let measure = SensorModel::Disparity8.measure(exposure.camera);
     let hidden = exposure.hidden_from_right(PAIR_BASELINE_M, true);

@@ -84,13 +84,13 @@ impl Place {
         Place { origin_m: [x_m, y_m, 0.0], yaw_deg: 0.0 }
     }
 
-    /// The same, so much higher.
+    /// The place, raised by so much.
     pub fn raised(mut self, z_m: f64) -> Self {
         self.origin_m[2] += z_m;
         self
     }
 
-    /// The same, turned to the left.
+    /// The place, turned to the left.
     pub fn turned(mut self, yaw_deg: f64) -> Self {
         self.yaw_deg += yaw_deg;
         self
@@ -190,9 +190,8 @@ impl Scene {
         self.surfaces.push(Surface::Disc { centre: to, normal, radius });
     }
 
-    /// A bent sheet: a strip of a cylinder's side of the given radius, `size` = (length of the
-    /// straight side, width across the bend, both metres), its middle at `middle`, straight along
-    /// `along`, bulging along `facing`.
+    /// A curved sheet: a strip of a cylinder's side of the given radius, `size` = (length of the straight side, width
+    /// across the curve, both metres), its middle at `middle`, straight along `along`, bulging along `facing`.
     pub fn sheet(&mut self, middle: [f64; 3], along: [f64; 3], facing: [f64; 3], size: [f64; 2], radius: f64) {
         let Some((axis, facing)) = frame(along, facing) else { return };
         let centre = sub(middle, scale(facing, radius));

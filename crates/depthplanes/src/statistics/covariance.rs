@@ -1,31 +1,31 @@
-//! The covariance of a plane's coefficients by what is known of its pixels' errors.
+//! The covariance of a plane's coefficients from what is known of its pixels' errors.
 //!
-//! In: a plane of least squares and the noise of its map. Out: the covariance by three parts of the error: white with
+//! In: a least-squares plane and the noise of its map. Out: the covariance by three parts of the error: white with
 //! rounding, which averages out over pixels; smooth, which averages out over patches of tens of pixels at best; and
 //! what the residuals show beyond both.
 
 use super::least_squares::AffineFit;
 use crate::noise::{NoiseModel, Patch};
 
-/// What the smooth part is made of: lengths over which it is correlated (the integral of the correlation), pixels, and
-/// variances in units of that of the first. Patches: the lattice of 32 pixels that gives made-up frames the block means of
-/// recorded ones has this length. Bows over the whole picture: twice that variance; of the five made-up cameras, whose bows
-/// are set after recorded frames, it is 3, 4, 0.7, 0.4 and 0.3 times.
+/// What the smooth part is made of: lengths over which it is correlated (the integral of the correlation), pixels,
+/// and variances in units of that of the first. Patches: the lattice of 32 pixels that gives synthetic frames the
+/// block means of recorded ones has this length. Bows over the whole picture: twice that variance; for the five
+/// synthetic cameras, whose bows are set after recorded frames, it is 3, 4, 0.7, 0.4 and 0.3 times.
 const SMOOTH: [(f64, f64); 2] = [(64.0, 1.0), (512.0, 2.0)];
-/// Variance of these patches by what is stated or estimated of the smooth part. That is seen about planes, and a plane of
-/// 100 x 100 pixels takes 57 % of the patches' variance for its own.
+/// Variance of these patches over the variance that is stated or estimated for the smooth part. The latter is
+/// measured about planes, and a plane of 100 x 100 pixels takes up 57 % of the patches' variance.
 const OF_PATCHES: f64 = 2.3;
-/// Length of what differs between neighbours but is shared by a few, pixels: windows in which stereo and structured light
-/// are matched.
+/// Correlation length, pixels, of an error that is shared by a few neighbours: the windows in which stereo and
+/// structured light are matched.
 const FEW: f64 = 8.0;
-/// What residuals may show beside the white part, in variances, before it is something else: it is known to a quarter of
-/// its deviation (docs/noise.md).
+/// Largest variance of residuals, in variances of the white part, that is still taken for white error: the white part
+/// is known to a quarter of its deviation (docs/noise.md).
 const WHITE: f64 = 1.56;
-/// What scenes without smooth error show of it by their edges, in variances of the white part: 0.3 deviations
-/// (docs/noise.md).
+/// Smooth variance that scenes without smooth error seem to have because of their edges, in variances of the white
+/// part: 0.3 deviations (docs/noise.md).
 const BY_EDGES: f64 = 0.09;
-/// Share of the smooth part's variance that has to be left in residuals of a plane that tells how large it is: planes of
-/// 64 x 64 pixels and more.
+/// Share of the smooth variance that a plane has to leave in its residuals to tell how large it is: planes of 64 x 64
+/// pixels and more do.
 const TELLING: f64 = 0.2;
 
 /// Coefficients' covariance.
@@ -36,9 +36,9 @@ type Covariance = [[f64; 3]; 3];
 pub(super) struct Known {
     pub(super) fit: AffineFit,
     pub(super) patch: Patch,
-    /// At its pixels' mean.
+    /// q at its pixels' mean.
     pub(super) q: f64,
-    /// Inverse depth, 1/m, over that space's units.
+    /// Inverse depth, 1/m, per unit of that space.
     pub(super) slope: f64,
 }
 
@@ -51,19 +51,20 @@ impl Known {
             return None;
         }
         let (smooth, left) = self.smooth(noise, BY_EDGES);
-        // What residuals show beside the smooth part, if by more than three standard deviations of its chi-squared.
+        // What the residuals show beside the smooth part, if it exceeds the white part by more than three standard
+        // deviations of its chi-squared.
         let shown = fit.variance() - left;
         let is_larger = shown > (1.0 + 3.0 * (2.0 / fit.n).sqrt()) * of_white;
         let times = if is_larger { shown / of_white } else { 1.0 };
-        // Who states no smooth part has none.
+        // Without a smooth part all of it counts as white.
         let of_pixels = if self.smooth_variance(noise) > 0.0 { times.min(WHITE) } else { times };
         let (few, _) = fit.covariance_by_smooth((times - of_pixels) * of_white, FEW);
         let all = |i: usize, j: usize| of_pixels * white[i][j] + few[i][j] + smooth[i][j];
         Some(std::array::from_fn(|i| std::array::from_fn(|j| all(i, j) * self.slope * self.slope)))
     }
 
-    /// Sums of squares of the smooth part: that the residuals show, and that the noise expects in them. `None` for a plane that
-    /// is too small to tell.
+    /// Sums of squares of the smooth part: what the residuals show, and what the noise leads to expect. `None` for a
+    /// plane that is too small to tell.
     pub(super) fn smooth_squares(&self, noise: &NoiseModel) -> Option<[f64; 2]> {
         let (_, expected) = self.smooth(noise, 0.0);
         let is_telling = expected > TELLING * OF_PATCHES * self.smooth_variance(noise);
@@ -71,7 +72,8 @@ impl Known {
         is_telling.then_some([self.fit.n * shown, self.fit.n * expected])
     }
 
-    /// Covariance by the smooth part, less so many variances of the white part, and what it leaves in the residuals.
+    /// Covariance by the smooth part, which is reduced by `less` variances of the white part; and the variance that
+    /// it leaves in the residuals.
     fn smooth(&self, noise: &NoiseModel, less: f64) -> (Covariance, f64) {
         let variance = OF_PATCHES * (self.smooth_variance(noise) - less * noise.own_variance(self.q)).max(0.0);
         let [patches, bows] = SMOOTH.map(|(length, share)| self.fit.covariance_by_smooth(share * variance, length));

@@ -1,4 +1,4 @@
-//! The second pass over a plane's pixels: their distances from it, and what of it is seen.
+//! The second pass over a plane's pixels: their distances from it, and how much of its area is seen.
 
 use super::least_squares::{AffineFit, LANES, Lanes, hessian, in_lanes, metric_covariance};
 use super::plane_sums::PlaneSums;
@@ -27,7 +27,7 @@ pub(super) struct Distances {
     squares: Lanes,
     /// Sum of the points, metres.
     pub(super) point: [f64; 3],
-    /// The plane's part behind its pixels' squares, in units of `1 / (distance |fx fy|)`, m^3.
+    /// Area of the plane's part behind its pixels' squares, in units of `1 / (distance |fx fy|)`, m^3.
     area: f64,
     /// Whether some pixel's square reaches infinity on the plane.
     reaches_infinity: bool,
@@ -36,7 +36,7 @@ pub(super) struct Distances {
 }
 
 impl Distances {
-    /// Adds a run of pixels by their depths, of which a unit is so many metres; not their points.
+    /// Adds a run of pixels by their depths, in units of `metres`; their points are not summed.
     #[inline(always)]
     pub(super) fn add_depths<T: Pixel>(&mut self, run: &LabelledRun, values: &[T], plane: &AffineFit, metres: f64) {
         let (first, slope) = (metres * plane.at(run.u_first.into(), run.v.into()), metres * plane.abc[0]);

@@ -63,7 +63,7 @@ impl Moments {
         self.vv += n * v * v;
     }
 
-    /// The same points with the values that were summed beside them.
+    /// These sums with the values that were summed beside them.
     pub fn with(mut self, values: &ValueSums) -> Self {
         [self.q, self.uq, self.vq, self.qq] = values.lanes.map(|lanes| lanes.iter().sum());
         self
@@ -147,7 +147,7 @@ impl Moments {
     }
 }
 
-/// Values that are summed side by side; always as many, so that every processor rounds alike.
+/// Values that are summed side by side; the same number on every processor, so that all round alike.
 pub(crate) const LANES: usize = 8;
 /// One number for each of them.
 pub(crate) type Lanes = [f64; LANES];
@@ -186,8 +186,8 @@ impl ValueSums {
     }
 }
 
-/// Turns a run's values into q by their numbers k and themselves, and calls `visit` with the numbers and q of [`LANES`]
-/// at a time, 0 for lanes without a value.
+/// Turns the values of a run into q, which may depend on a value's number k, and calls `visit` with the numbers and q
+/// of [`LANES`] at a time, 0 for lanes without a value.
 #[inline(always)]
 pub(crate) fn in_lanes<T: Copy>(values: &[T], q: impl Fn(f64, T) -> f64, mut visit: impl FnMut(&Lanes, &Lanes)) {
     let (groups, rest) = values.as_chunks::<LANES>();
@@ -207,7 +207,7 @@ pub(crate) fn in_lanes<T: Copy>(values: &[T], q: impl Fn(f64, T) -> f64, mut vis
     }
     let mut lanes = [0.0; LANES];
     if let Some(last) = values.last_chunk::<LANES>() {
-        // The rest is the end of the last few values, whose first ones have been visited.
+        // The rest is read as the end of the last [`LANES`] values, of which the first ones have been visited.
         let (first, done) = ((values.len() - LANES) as f64, (values.len() - rest.len()) as f64);
         for lane in 0..LANES {
             k[lane] = first + NUMBERS[lane];
@@ -253,7 +253,7 @@ impl AffineFit {
         self
     }
 
-    /// The same plane of other values: `q' = slope q + offset`.
+    /// The plane of other values `q' = slope q + offset` at the same points.
     pub fn scaled(mut self, slope: f64, offset: f64) -> Self {
         self.abc = self.abc.map(|x| x * slope);
         self.abc[2] += offset;
@@ -301,15 +301,15 @@ impl AffineFit {
         (self.about_origin(propagate(&inverse, &sums)), sums[2][2] / self.n)
     }
 
-    /// Covariance of (a, b, c) by an error that neighbouring points share, of that variance and correlated over `length`
-    /// pixels (the integral of its correlation along a line); and what of the variance the residuals show, since
-    /// the plane takes the rest for its own.
+    /// Covariance of (a, b, c) by an error that neighbouring points share, with the given variance and correlated
+    /// over `length` pixels (the integral of its correlation along a line); and how much of the variance the
+    /// residuals show, since the plane takes up the rest.
     ///
-    /// Along a side of l pixels, r = l / length, the mean of such an error keeps the share `1 / sqrt(1 + r^2)` of its
-    /// variance and its slope, in standard deviations of place, `r^2 / (2 + r^2 + r^3)`: within 7 and 5 % what a Gaussian
-    /// correlation gives by integration. Both become `1 / r`, one over the number of patches, on long sides. On short ones
-    /// the error is a constant with a slope of one deviation over `length / 2.5`. The sides are those of the parallelogram
-    /// of [`AffineFit::covariance_by`].
+    /// Along a side of l pixels, with r = l / length, the mean of such an error keeps the share `1 / sqrt(1 + r^2)`
+    /// of its variance; its slope, in standard deviations of place, keeps `r^2 / (2 + r^2 + r^3)`: within 7 and 5 %
+    /// of what a Gaussian correlation gives by integration. On long sides both become `1 / r`, one over the number of
+    /// patches. On short ones the error is a constant with a slope of one deviation over `length / 2.5`. The sides
+    /// are those of the parallelogram of [`AffineFit::covariance_by`].
     pub fn covariance_by_smooth(&self, variance: f64, length: f64) -> ([[f64; 3]; 3], f64) {
         let [across, skew, down] = self.spread();
         let shares = |spread: f64| {
@@ -352,11 +352,11 @@ fn propagate<const N: usize>(jacobian: &[[f64; 3]; N], covariance: &[[f64; 3]; 3
 /// Covariance of (nx, ny, nz, distance) of the plane whose inverse depth (1/m) has the coefficients `abc` with that
 /// covariance.
 ///
-/// With m as in [`Hessian::from_inverse_depth`], which is linear in (a, b, c), an error of m of s |m| along m and of
-/// t |m| across it moves the normal `-m / |m|` by `-t + s t` and the distance `1 / |m|` by
-/// `(-s + s^2 - t . t / 2) / |m|`, to second order. The first order alone is not enough: a plane turns about its
-/// pixels, so that one combination of normal and distance has hardly any error of first order, and all
-/// of it is of second order where the normal is not known to a fraction of a degree.
+/// m, as in [`Hessian::from_inverse_depth`], is linear in (a, b, c). If it is off by s |m| along m and by t |m| across
+/// it, the normal `-m / |m|` moves by `-t + s t` and the distance `1 / |m|` by `(-s + s^2 - t . t / 2) / |m|`, to
+/// second order. The first order alone is not enough: a plane turns about its pixels, so that one combination of
+/// normal and distance has hardly any error of first order, and all of its error is of second order where the normal
+/// is not known to a fraction of a degree.
 pub fn metric_covariance(abc: [f64; 3], covariance: &[[f64; 3]; 3], camera: &Intrinsics) -> [[f64; 4]; 4] {
     let m = ray_coefficients(abc, camera);
     let length = m.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -383,7 +383,7 @@ pub fn metric_covariance(abc: [f64; 3], covariance: &[[f64; 3]; 3], camera: &Int
     propagate(&[axes(0), axes(1), axes(2), [0.0, 0.0, length.recip()]], &errors)
 }
 
-/// Two unit vectors across a unit vector and across each other.
+/// Two unit vectors at right angles to a unit vector and to each other.
 fn across([x, y, z]: [f64; 3]) -> [[f64; 3]; 2] {
     // Duff et al., Building an Orthonormal Basis, Revisited, JCGT 2017.
     let sign = 1.0f64.copysign(z);

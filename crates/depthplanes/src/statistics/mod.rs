@@ -1,4 +1,4 @@
-//! Running sums, least squares, and from labelled pixels to plane records.
+//! Running sums, least squares, and plane records from labelled pixels.
 
 mod covariance;
 mod distances;

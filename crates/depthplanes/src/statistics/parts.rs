@@ -24,7 +24,7 @@ impl<T> Default for ByLabel<T> {
 }
 
 impl<T> ByLabel<T> {
-    /// Leaves no record, and makes room for so many.
+    /// Removes all records, and makes room for `room` of them.
     pub(super) fn clear(&mut self, room: usize) {
         self.number.resize(MAX_PLANES + 1, 0);
         for label in self.labels.drain(..) {

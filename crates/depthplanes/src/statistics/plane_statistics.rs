@@ -36,7 +36,7 @@ struct MapPart {
 }
 
 impl PlaneStatistics {
-    /// First pass, on as many threads. Labels are 1, 2, .. in `runs`, and none is left out.
+    /// First pass, on `threads` threads. Labels are 1, 2, .. in `runs`, and none is left out.
     pub fn tally<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
@@ -73,7 +73,7 @@ impl PlaneStatistics {
         self.tallies.iter_mut().for_each(|tally| tally.finish(sensor));
     }
 
-    /// Calls `work` for each part of the map with the part's runs and how many labels to make room for, on as many
+    /// Calls `work` for each part of the map with the part's runs and how many labels to make room for, on `threads`
     /// threads: all parts together have room for as many as there can be.
     fn each_part<T: Pixel>(
         &mut self,
@@ -97,18 +97,18 @@ impl PlaneStatistics {
         map_reduce(threads, &mut self.parts[..], work_on, |(), ()| ());
     }
 
-    /// The planes' tallies; label 1 is the first.
+    /// The planes' sums; label 1 is the first.
     pub fn tallies(&self) -> &[PlaneSums] {
         &self.tallies
     }
 
-    /// Drops tallies; the labels of the others move up.
+    /// Drops the sums of some planes; the labels of the others move up.
     pub fn retain(&mut self, keep: impl FnMut(&PlaneSums) -> bool) {
         self.tallies.retain(keep);
     }
 
-    /// Second pass, on as many threads: the records, in order of label. Shares are taken of the map's `valid_pixels`,
-    /// covariances from the noise if it is known.
+    /// Second pass, on `threads` threads: the records, in order of label. Shares are taken of the map's
+    /// `valid_pixels`, covariances from the noise if it is known.
     pub fn describe<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
@@ -164,7 +164,7 @@ impl PlaneStatistics {
         }));
     }
 
-    /// The noise, a smooth part that was estimated being as large as the residuals of all planes together show it: the
+    /// The noise, with an estimated smooth part made as large as the residuals of all planes together show it: the
     /// estimate from neighbouring cells misses what is smooth over far more than these.
     pub fn as_residuals_show(&self, noise: &NoiseModel, sensor: &Sensor) -> NoiseModel {
         if !noise.is_smooth_shown() {

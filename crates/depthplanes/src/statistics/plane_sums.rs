@@ -78,7 +78,7 @@ pub(super) fn sum<T: Pixel>(
 }
 
 impl Sums {
-    /// Without a pixel, about a run's first.
+    /// Sums without a pixel, about the first pixel of a run.
     fn beginning(run: &LabelledRun, value: f64, inverse: f64) -> Self {
         Sums {
             pixel_count: 0,

@@ -1,17 +1,17 @@
 //! A quadratic through the means of cells, by least squares.
 //!
-//! In: cells with their residuals about a plane. Out: how much of these a quadratic explains, and how much
-//! a plane does.
+//! In: cells with their residuals about a plane. Out: how much of the residuals a quadratic explains, and how much a
+//! plane does.
 
 /// Sums over cells of `weight x^i y^j` up to the fourth power, and with a value r up to the second: the normal equations
 /// of a quadratic in (x, y), and how well it or anything else explains r.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct QuadraticSums {
-    /// Of x^i y^j, i + j <= 4, by j and i.
+    /// Sums of weight x^i y^j, i + j <= 4, by j and i.
     powers: [[f64; 5]; 5],
-    /// Of r x^i y^j, i + j <= 2.
+    /// Sums of weight r x^i y^j, i + j <= 2.
     right: [[f64; 3]; 3],
-    /// Of r r.
+    /// Sum of weight r r.
     pub(crate) squares: f64,
     /// Cells.
     pub(crate) cells: f64,
@@ -19,7 +19,7 @@ pub(crate) struct QuadraticSums {
     pub(crate) pixels: f64,
     /// Sum of the smooth part's variances, in variances of a pixel.
     pub(crate) smooth: f64,
-    /// Sum of the weighed squared residuals about the cell's own region.
+    /// Sum of the weighted squared residuals about the cell's own region.
     pub(crate) by_planes: f64,
 }
 
@@ -83,8 +83,8 @@ impl QuadraticSums {
         right
     }
 
-    /// The normal equations of the first N terms, those before a term taken out of it: what a term explains beyond them
-    /// is its right side squared over its pivot.
+    /// The normal equations of the first N terms, each with the terms before it eliminated: what a term explains
+    /// beyond them is its right side squared over its pivot.
     #[inline(always)]
     fn eliminate<const N: usize>(&self) -> Eliminated {
         let (mut m, mut r) = (self.matrix(), self.right());
@@ -117,13 +117,13 @@ impl QuadraticSums {
         solution
     }
 
-    /// What a quadratic explains beyond a plane.
+    /// Sum of squares that a quadratic explains beyond a plane.
     pub(crate) fn bow(&self) -> f64 {
         let Eliminated { matrix, right, pivots } = self.eliminate::<6>();
         (3..6).filter(|&i| pivots[i]).map(|i| right[i] * right[i] / matrix[i][i]).sum()
     }
 
-    /// Sum of the weighed squares that these coefficients leave.
+    /// Sum of the weighted squares that these coefficients leave.
     pub(crate) fn left_by(&self, coefficients: &[f64; 6]) -> f64 {
         let (matrix, right) = (self.matrix(), self.right());
         let explained: f64 = (0..6)

@@ -1,6 +1,6 @@
 //! Sets as the bits of words, and as bytes of 0 and 1.
 
-/// Takes the lowest set bit away; the bits up to and including it.
+/// Clears the lowest set bit of `bits`; returns all bits up to and including it.
 #[inline(always)]
 pub(crate) fn next_bit(bits: &mut u64) -> Option<u64> {
     let up_to = *bits ^ bits.wrapping_sub(1);
@@ -19,14 +19,14 @@ pub(crate) fn bits(mut word: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// A word of a row's mask, every bit moved so many pixels to the left; 0 where there is no row.
+/// A word of a row's mask with every pixel moved `by` places to the left; 0 where there is no row.
 #[inline(always)]
 pub(crate) fn ahead(row: &[u64], word: usize, by: usize) -> u64 {
     let part = |word: usize| row.get(word).map_or(0, |&bits| u128::from(bits));
     ((part(word) | part(word + 1) << 64) >> by) as u64
 }
 
-/// The same, one pixel to the right.
+/// A word of a row's mask with every pixel moved one place to the right.
 #[inline(always)]
 pub(crate) fn behind(row: &[u64], word: usize) -> u64 {
     let before = word.checked_sub(1).and_then(|word| row.get(word)).map_or(0, |before| before >> 63);

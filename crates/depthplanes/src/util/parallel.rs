@@ -1,7 +1,7 @@
-//! Work on parts of a whole, side by side.
+//! Work on parts of a whole, in parallel.
 //!
-//! In: something that can be cut between its rows. Out: what the work on the parts gives, put together. Only for work
-//! whose answer does not depend on where the cuts are.
+//! In: something that can be split between its rows. Out: the results of the parts, put together. Only for work whose
+//! answer does not depend on where it is split.
 
 use std::ops::Range;
 
@@ -13,11 +13,11 @@ pub(crate) trait Rows: Sized + Send {
     fn split_rows(self, rows: usize) -> (Self, Self);
 }
 
-/// Parts for each thread, so that one that has little to do can take from the others.
+/// Parts for each thread, so that a thread with little to do can take some from the others.
 const PARTS: usize = 4;
 
 /// Does the work on about `threads` times [`PARTS`] parts of a whole, or on the whole if there is one thread (or no
-/// feature `parallel`); `unite` puts neighbouring answers together.
+/// feature `parallel`); `unite` puts the results of neighbouring parts together.
 pub(crate) fn map_reduce<W: Rows, A: Send>(
     threads: usize,
     whole: W,
@@ -28,13 +28,13 @@ pub(crate) fn map_reduce<W: Rows, A: Send>(
     split(parts, whole, &work, &unite)
 }
 
-/// Does the work where several threads share what it hands to [`map_reduce`], if there is more than one: threads that go to
-/// sleep between its stages take longer to wake than some stages take.
+/// Does the work inside the thread pool, if there is more than one thread, so that all its calls of [`map_reduce`]
+/// share the pool's threads: threads that go to sleep between stages take longer to wake than some stages take.
 pub(crate) fn install<A: Send>(threads: usize, work: impl FnOnce() -> A + Send) -> A {
     join(threads, work, || ()).0
 }
 
-/// Does two things, side by side if there is more than one thread.
+/// Does two things, in parallel if there is more than one thread.
 pub(crate) fn join<A: Send, B: Send>(
     threads: usize,
     a: impl FnOnce() -> A + Send,
@@ -59,7 +59,7 @@ fn split<W: Rows, A: Send>(
     unite(a, b)
 }
 
-/// Does both, side by side if there is a thread for it.
+/// Does both, in parallel if a thread is free.
 #[cfg(feature = "parallel")]
 fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
     rayon::join(a, b)
@@ -125,7 +125,7 @@ impl<T: Send> Rows for NumberedRows<'_, T> {
     }
 }
 
-/// Does the work on `per_part` rows at a time, on as many threads; each of these parts has memory of its own.
+/// Does the work on `per_part` rows at a time, on `threads` threads; each of these parts has memory of its own.
 pub(crate) fn for_row_blocks<P: Default + Send>(
     threads: usize,
     rows: usize,

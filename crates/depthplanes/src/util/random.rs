@@ -1,6 +1,6 @@
 //! Random draws that are the same on every platform.
 //!
-//! In: a seed. Out: numbers. Who draws is given the seed; nothing here asks the outside.
+//! In: a seed. Out: numbers. The caller gives the seed; nothing here asks the outside.
 
 /// SplitMix64 (Steele, Lea and Flood, *Fast Splittable Pseudorandom Number Generators*, 2014): one
 /// 64-bit word of state, every seed a good one.

@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
-/// A place that belongs to nothing.
+/// The number of a place that belongs to nothing.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// Numbers that are compared together.
 const LANES: usize = 16;
 
-/// Calls `visit` for each run of a row's places that have one number, but not for [`NONE`]: the number, the columns.
+/// Calls `visit` for each run of a row's places that have one number, except [`NONE`], with the number and the columns.
 #[inline(always)]
 pub(crate) fn each_run(row: &[u32], first: usize, mut visit: impl FnMut(u32, Range<usize>)) {
     let mut start = 0;

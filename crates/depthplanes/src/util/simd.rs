@@ -1,4 +1,4 @@
-//! Code that is compiled for the vectors of this processor as well.
+//! Code that is compiled a second time for the vectors of this processor.
 
 #[cfg(test)]
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -32,7 +32,7 @@ const LEVELS: &[Level] = &[
     ("portable", || true),
 ];
 
-/// Calls `work` with each instruction set of this processor as if it were the fastest there is, on all threads.
+/// Calls `work` once for each instruction set of this processor as if it were the fastest there is, on all threads.
 #[cfg(test)]
 pub(crate) fn with_each_level(mut work: impl FnMut(&'static str)) {
     for (first, (name, _)) in LEVELS.iter().enumerate().filter(|(_, (_, is_here))| is_here()) {

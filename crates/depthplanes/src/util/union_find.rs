@@ -3,7 +3,7 @@
 
 use std::hint::select_unpredictable;
 
-/// A number of an element.
+/// The number of an element.
 pub(crate) trait Element: Copy + Ord {
     /// Where its parent stands.
     fn at(self) -> usize;
@@ -32,7 +32,7 @@ pub(crate) fn find<E: Element>(parents: &[E], mut element: E) -> E {
     element
 }
 
-/// The same, halving the path on the way.
+/// As [`find`], halving the path on the way.
 #[inline(always)]
 fn find_halving<E: Element>(parents: &mut [E], mut element: E) -> E {
     while parents[element.at()] != element {
@@ -50,8 +50,8 @@ pub(crate) fn unite<E: Element>(parents: &mut [E], a: E, b: E) {
     parents[a.max(b).at()] = a.min(b);
 }
 
-/// Turns a forest into groups, in place: every element's entry becomes its group, counted in the order
-/// of first elements, and `sizes`, one for each element, the sums over the groups.
+/// Turns a forest into groups, in place: every element's entry becomes its group, numbered in the order of first
+/// elements; `sizes`, which has one number for each element, becomes the sums over the groups.
 ///
 /// A parent comes before its children, so its group is known when theirs is asked for; a group is
 /// never above its elements, so no size is overwritten before it was read.

@@ -1,15 +1,16 @@
 //! The region of every pixel.
 //!
-//! In: regions and the patches they consist of. Out: an image of numbers, 0 for no region. A region whose pixels cost less
-//! by larger regions beside it, or without a plane, than its own plane saves, is none.
+//! In: regions and the patches they consist of. Out: an image of numbers, 0 for no region. A region gets a number if
+//! its plane saves more bits than it costs; the bits are saved against describing its pixels by larger regions beside
+//! it or without a plane.
 
 use super::code::Code;
 use super::merge::Region;
 use crate::baselines::affine::Affine;
 use crate::limits::MAX_PLANES;
 
-/// The numbers; regions of half of `min` pixels or fewer have none, for the rest of a plane may be in blocks where others
-/// are described.
+/// Regions of half of `min` pixels or fewer get no number. It is half, since the rest of a plane may be in blocks
+/// where other planes are described.
 pub(super) fn assign(
     affine: &Affine,
     code: &Code,

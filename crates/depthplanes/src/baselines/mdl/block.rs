@@ -1,7 +1,7 @@
 //! The planes of blocks (section 4 of Yang and Förstner).
 //!
-//! In: the map in blocks. Out: for each pixel the patch it is on, a plane of its block, and the patches. In each block random
-//! sampling finds up to three planes; as many of them are kept as make the shortest description.
+//! In: the map in blocks. Out: for each pixel the patch it is on, a plane of its block, and the patches. In each
+//! block random sampling finds up to three planes; as many of them are kept as make the shortest description.
 
 use super::code::Code;
 use super::merge::Region;
@@ -11,7 +11,7 @@ use crate::util::random::Random;
 
 /// Most planes of a block.
 const PLANES: usize = 3;
-/// Most draws for a plane, and how probable it may be that none of fewer was one.
+/// Most draws for a plane, and the probability of having missed it at which fewer are enough.
 const DRAWS: usize = 200;
 const MISSED: f64 = 0.01;
 /// How often a plane is fitted to the pixels near it.
@@ -68,7 +68,7 @@ fn spots(affine: &Affine, code: &Code, [u0, v0]: [usize; 2], side: usize) -> Vec
     pixels.map(spot).filter(|spot| spot.weight > 0.0).collect()
 }
 
-/// Up to three planes, each with most of the pixels that those before it left.
+/// Up to three planes, each near most of the pixels that those before it left.
 fn candidates(code: &Code, spots: &[Spot], random: &mut Random) -> Vec<[f64; 3]> {
     let mut left = spots.to_vec();
     let mut planes = Vec::new();
@@ -127,7 +127,7 @@ fn through([s, t, r]: [&Spot; 3]) -> Option<[f64; 3]> {
     Some([a, b, s.q - a * s.place[0] - b * s.place[1]])
 }
 
-/// The first so many planes that make the shortest description.
+/// The first few planes, as many as make the shortest description.
 fn shortest(code: &Code, spots: &[Spot], planes: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let bits = |count: usize| {
         let spot = |spot: &Spot| match nearest(code, spot, &planes[..count]) {

@@ -1,14 +1,15 @@
 //! What a pixel and a plane cost, in bits (section 3 of Yang and Förstner).
 //!
-//! In: a map in q and its noise. A pixel without a plane costs the bits of a value between 0 and the largest; one on a plane
-//! costs those of its distance, which is Gaussian. Values are told to the median noise: finer is none of the scene.
+//! In: a map in q and its noise. A pixel without a plane costs the bits of a value between 0 and the largest; one on
+//! a plane costs those of its distance, which is Gaussian. Values are coded to the median noise: finer differences
+//! are not the scene's.
 
 use crate::baselines::affine::Affine;
 use crate::noise::{NoiseModel, Patch};
 use crate::statistics::least_squares::Moments;
 use std::f64::consts::{LN_2, TAU};
 
-/// The costs of a map's pixels. Its q are about the median, its places about the middle of the map.
+/// The costs of a map's pixels. q is stored relative to its median, places relative to the middle of the map.
 #[derive(Debug)]
 pub(super) struct Code {
     noise: NoiseModel,
@@ -40,7 +41,7 @@ impl Code {
         Code { noise: *noise, median, q, middle, weights, resolution, value }
     }
 
-    /// A place about the middle.
+    /// A place relative to the middle of the map.
     pub(super) fn about(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         [u - self.middle[0], v - self.middle[1]]
     }
@@ -55,7 +56,7 @@ impl Code {
         3.0 * self.value
     }
 
-    /// Bits of which of so many planes, or none, each of some pixels is on.
+    /// Bits that say which of so many planes, or none, each of some pixels is on.
     pub(super) fn mask(&self, pixels: usize, planes: usize) -> f64 {
         pixels as f64 * ((planes + 1) as f64).log2()
     }
@@ -87,7 +88,7 @@ impl Code {
         (self.noise.variance_in(patch, q) / self.noise.variance(q)).max(1.0)
     }
 
-    /// A pixel as sums, by its weight.
+    /// A pixel as sums, with its weight.
     pub(super) fn sums(&self, at: usize, [u, v]: [f64; 2]) -> Moments {
         let (q, n) = (self.q[at], self.weights[at]);
         Moments {

@@ -1,8 +1,8 @@
 //! Patches of neighbouring blocks become regions (section 5 of Yang and Förstner).
 //!
-//! In: patches and which of them lie in neighbouring blocks. Out: regions. Two are merged if one plane describes both more
-//! shortly: it saves a plane's bits and costs those of the larger distances. The pair that gains most goes first. Pixels
-//! that are rounded alike err alike: together they are no surer of a plane than one (our addition).
+//! In: patches and which of them lie in neighbouring blocks. Out: regions. Two are merged if one plane describes both
+//! in fewer bits: it saves a plane's bits and costs those of the larger distances. The pair that gains most goes
+//! first. Pixels that are rounded alike err alike: together they tell no more of a plane than one (our addition).
 
 use super::code::Code;
 use crate::noise::Patch;
@@ -26,7 +26,7 @@ pub(super) struct Region {
 }
 
 impl Region {
-    /// None yet.
+    /// A region without pixels.
     pub(super) fn new() -> Self {
         let (low, high) = ([f64::MAX; 2], [f64::MIN; 2]);
         Region { sums: Moments::default(), low, high, pixels: 0, plane: None, squares: 0.0, neighbours: Vec::new() }

@@ -1,10 +1,10 @@
 //! mdl: as many planes as make the shortest description (Yang, Förstner, *Plane detection in point cloud data*,
 //! TR-IGG-P-2010-01), from its description.
 //!
-//! In: any map; no camera is needed, for this works on columns, rows and q, where planes are affine and a pixel costs the
-//! bits of its q. Out: connected pieces of planes of blocks of the map, merged where one plane describes both more shortly.
-//! The number of planes is found, not given; all rests on the noise: what it does not hold, bows and waves of a sensor, is
-//! described by more planes.
+//! In: any map; no camera is needed, for this works on columns, rows and q, where planes are affine and a pixel costs
+//! the bits of its q. Out: connected pieces of planes of blocks of the map, merged where one plane describes both in
+//! fewer bits. The number of planes is found, not given. All rests on the noise: error that it does not include, such
+//! as bows and waves of a sensor, is described by more planes.
 
 mod assign;
 mod block;

@@ -1,7 +1,8 @@
 //! Planes through three points near each other (section 4.3 of Schnabel et al.).
 //!
-//! In: the points that are left. Out: candidates. The first point is any; the others share a cell of the quadtree over
-//! pixels with it, of a level that has served well. A plane whose three points have other normals is dropped.
+//! In: the points that are left. Out: candidates. The first point is any; the others are drawn from the cell of the
+//! quadtree over pixels that holds it, at a level that has served well. A plane is dropped if its three points have
+//! other normals than it.
 
 use super::score::{Candidate, Free};
 use crate::baselines::affine::Affine;
@@ -11,7 +12,7 @@ use crate::util::random::Random;
 
 /// Columns and rows of the smallest cells.
 const SMALLEST: usize = 16;
-/// Tries to find a free point in a cell.
+/// Most tries to find a free point in a cell.
 const TRIES: usize = 16;
 /// Share of the draws that are spread evenly over the levels (section 4.3).
 const EVEN: f64 = 0.1;
@@ -49,7 +50,7 @@ impl Draws {
         Some(candidate)
     }
 
-    /// A level, those of merit more often.
+    /// Draws a level, those of more merit more often.
     fn level(&self, random: &mut Random) -> usize {
         let last = self.merits.len() - 1;
         if random.uniform() < EVEN {
@@ -75,14 +76,14 @@ impl Draws {
         (0..TRIES).map(|_| anywhere()).find(|&other| pieces.is_free(other))
     }
 
-    /// How probable it is that a plane of so many points was drawn by none of the draws (eq. 7): one is drawn with
+    /// The probability that a plane of `size` points was missed by all draws (eq. 7): one draw gives it with
     /// probability `size / (all levels 2^(k-1))`, k being 3 points.
     pub(super) fn missed(&self, size: f64, all: usize) -> f64 {
         let drawn = size / (all as f64 * self.merits.len() as f64 * 4.0);
         (1.0 - drawn.min(1.0)).powf(self.made)
     }
 
-    /// Forgets draws as a share of the points is taken: those with a point among them, of three.
+    /// Forgets draws when a share of the points is taken: those with one of these among their three.
     pub(super) fn forget(&mut self, share: f64) {
         self.made *= (1.0 - share).powi(3);
     }

@@ -1,10 +1,10 @@
 //! ransac: planes by random sampling (Schnabel, Wahl, Klein, *Efficient RANSAC for point-cloud shape detection*, 2007),
 //! from its description. It finds the planes of HSBSR (Labatut, Pons, Keriven 2009).
 //!
-//! In: any map; lengths are in metres where unit and camera are known. Out: connected pieces of planes through three points
-//! with normals. The octree over points is a quadtree over pixels here, and pieces are connected in the image. It stops
-//! when a plane of more than `min` pixels is overlooked with the stated probability only. What is nearer to a plane than
-//! `epsilon` is part of it, low steps and shallow bends among it.
+//! In: any map; lengths are in metres where unit and camera are known. Out: connected pieces of planes through three
+//! points with normals. The octree over points is a quadtree over pixels here, and pieces are connected in the image.
+//! It stops when the probability of having overlooked a plane of more than `min` pixels is as small as stated. What
+//! is nearer to a plane than `epsilon` is part of it, low steps and shallow bends included.
 
 mod draw;
 mod score;
@@ -23,7 +23,7 @@ use score::{Candidate, Free};
 
 /// Draws between two looks at the candidates.
 const BATCH: usize = 128;
-/// Share of the largest piece that is as good, since planes are fitted to their pieces (our choice).
+/// A piece of this share of the largest is as good, since planes are fitted to their pieces (our choice).
 const GOOD: f64 = 0.9;
 
 pub(super) struct Ransac {
@@ -123,9 +123,9 @@ impl Ransac {
         pieces.finish()
     }
 
-    /// The candidate with the largest piece, or nearly, if one that has as large a piece is likely to have been drawn by now.
+    /// The candidate with the largest piece, or nearly, if one with as large a piece is likely to have been drawn by now.
     ///
-    /// That which may have the largest is held against more points until one whose piece is known is as good.
+    /// The candidate that may have the largest piece is tested on more points, until one whose piece is known is as good.
     fn best(
         &self,
         candidates: &mut Vec<Candidate>,

@@ -1,4 +1,4 @@
-//! How many points a plane has, found out on as few as tell (section 4.5 of Schnabel et al.).
+//! How many points a plane has, found out on as few of them as necessary (section 4.5 of Schnabel et al.).
 //!
 //! In: a plane, points in random order. Out: bounds of the number of all points on it, from those of the first 512, 1024
 //! and so on, until its connected piece is no larger than what was looked at.
@@ -55,10 +55,10 @@ pub(super) struct Candidate {
     pub(super) plane: Plane3,
     /// Pixels of the three points.
     pub(super) samples: [u32; 3],
-    /// Points it has been held against, and how many were on it.
+    /// Points it has been tested on, and how many of them lie on it.
     tried: usize,
     hits: usize,
-    /// How many points its piece has at most, two standard deviations above the estimate; once it is known, how many.
+    /// Most points its piece can have, two standard deviations above the estimate; once the piece is known, its points.
     pub(super) most: f64,
     pub(super) is_known: bool,
 }
@@ -70,12 +70,12 @@ impl Candidate {
         candidate
     }
 
-    /// Begins anew, some points being gone: it may have as many as before, but not more.
+    /// Begins anew after some points were taken: it may have as many as before, but not more.
     pub(super) fn restart(&mut self) {
         (self.tried, self.hits, self.is_known) = (0, 0, false);
     }
 
-    /// Holds it against as many points again and looks for its piece among as many.
+    /// Tests it on as many points again, and looks for its piece among as many.
     pub(super) fn refine(&mut self, free: &Free, pieces: &mut Pieces<'_>) {
         self.score(free, &pieces.tolerance);
         if let Some(piece) = pieces.largest(&self.plane, &self.samples, self.tried) {

@@ -151,8 +151,8 @@ impl Isa for Avx512 {
     }
 }
 
-/// Adds eight words at a time. Of these the ones that overflow carry into the next, and the ones that are
-/// all ones hand a carry on: both are bits of one small number, in which a carry runs by itself.
+/// Adds eight words at a time. Words that overflow carry into the next, and words that are all ones pass a carry on:
+/// both are bits of a small number, and one addition of these propagates every carry.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vl,bmi2")]
 fn add(a: &[u64], b: &[u64], sums: &mut [u64]) {

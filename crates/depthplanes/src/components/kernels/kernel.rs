@@ -123,7 +123,7 @@ impl Kernel {
         unsafe { (T::compiled(self).stitch)(map, rule, upper, lower, parent) }
     }
 
-    /// Masks of a row of numbers, and of how they are like those above.
+    /// Masks of a row of region numbers: those that are set, and those equal to the number at their left or above.
     pub(crate) fn masks(&self, row: &[u16], up: &[u16], rule: &Connectivity<u16>, out: RowMasks<'_>) {
         // SAFETY: as in `scan`.
         unsafe { (self.masks)(row, up, rule, out) }
@@ -144,7 +144,7 @@ impl fmt::Debug for Kernel {
 /// Words of a row that are painted at a time, so that their runs' labels fit on the stack.
 const BLOCK: usize = 16;
 
-/// Writes a strip's part of the label image, given the labels of its provisional labels.
+/// Writes a strip's part of the label image, given the plane's label for each provisional label.
 #[inline(always)]
 pub(super) fn paint_strip<I: Isa>(strip: &Strip, label_of_provisional: &[u16], image: &mut [u16]) {
     let mut provisional = strip.labels();

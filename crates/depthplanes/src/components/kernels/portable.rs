@@ -33,7 +33,7 @@ impl Isa for Portable {
                 }
                 continue;
             }
-            // Each is painted as if it were the last: many pixels take no longer than few.
+            // Each is painted 64 pixels wide, and the next paints over it: many pixels take no longer than few.
             while rest != 0 {
                 let bit = rest.trailing_zeros();
                 rest &= rest - 1;
@@ -49,8 +49,8 @@ impl Isa for Portable {
     }
 }
 
-/// 64 pixels of more runs and gaps than this are painted one by one, which takes a seventh less on a noisy Kinect map;
-/// clean ones, of a few runs, take half as long run by run.
+/// 64 pixels of more runs and gaps than this are painted one by one, which takes a seventh less time on a noisy
+/// Kinect map; clean maps, which have few runs, take half as long run by run.
 const MANY: u32 = 16;
 
 /// Masks of a row: flags in bytes, which vectorises, then eight bytes to eight bits.
@@ -73,7 +73,7 @@ fn masks<T: Pixel>(row: &[T], up: &[T], rule: &Connectivity<T>, out: RowMasks<'_
     }
 }
 
-/// Writes the conditions as 0 and 1, and 0 behind the last.
+/// Writes the conditions as 0 and 1, and 0 after the last.
 #[inline(always)]
 fn fill(flags: &mut [u8], conditions: impl ExactSizeIterator<Item = bool>) {
     let count = conditions.len().min(flags.len());

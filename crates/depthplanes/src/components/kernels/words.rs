@@ -20,7 +20,7 @@ pub(super) unsafe fn words<T: Pixel>(
     assert!(up.len() == width && out.valid.len() == width.div_ceil(64));
     assert!(out.close_left.len() == out.valid.len() && out.close_up.len() == out.valid.len());
     if width <= 64 {
-        // A narrow row is copied to where 64 pixels can be read, missing ones behind it.
+        // A narrow row is copied to where 64 pixels can be read, with missing ones after it.
         let (mut here, mut above) = ([T::ZERO; 65], [T::ZERO; 64]);
         here[1..][..width].copy_from_slice(row);
         above[..width].copy_from_slice(up);
@@ -31,9 +31,8 @@ pub(super) unsafe fn words<T: Pixel>(
         return;
     }
     let (here, above) = (row.as_ptr(), up.as_ptr());
-    // SAFETY: all words but the last lie within the row; so do the 64 pixels from column 1, which
-    // spare column 0 a left neighbour; and the row's last 64 pixels, of which the last word takes
-    // the highest bits.
+    // SAFETY: all words but the last lie within the row; so do the 64 pixels from column 1 on (column 0 has no left
+    // neighbour), and the row's last 64 pixels, of which the last word takes the highest bits.
     unsafe {
         out.valid[0] = valid(here);
         out.close_left[0] = close(here.add(1), here) << 1;

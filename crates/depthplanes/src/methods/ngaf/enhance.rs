@@ -132,7 +132,7 @@ impl Columns {
     }
 }
 
-/// Writes the means into `out`, which holds the map's own values; returns how many.
+/// Writes the means into `out`, which holds the map's own values; returns how many pixels were filled.
 fn fill<T: Pixel>(map: &DepthView<'_, T>, reach: usize, columns: &mut Columns, out: &mut [T]) -> usize {
     let (width, height, validity) = (map.width(), map.height(), map.validity());
     let exact = sums_are_exact(map);

@@ -1,7 +1,7 @@
 //! Why a pixel has a plane or none.
 //!
-//! In: a run of the method that is watched once, when all its groups are known and none is dropped by a condition of
-//! ours. Out: an [`Explanation`].
+//! In: one run of the method, observed when its groups are selected and described, before our own conditions drop
+//! any. Out: an [`Explanation`].
 
 use super::parameters::Ngaf;
 use super::pipeline::{Observer, Runner};
@@ -44,11 +44,11 @@ struct Trace {
     /// The map's value, if valid.
     before: Option<f64>,
     findings: Vec<Finding>,
-    /// Least difference from a neighbour that is not linked, map units.
+    /// Smallest difference from a neighbour that is not linked, map units.
     nearest: Option<f64>,
     /// Pixels of its group; 0 if it is not valid.
     pixels: usize,
-    /// Where it stands among the groups kept, from 0.
+    /// Its group's place among those kept, from 0.
     place: Option<usize>,
     /// The first of our own conditions that drops its group.
     dropped: Option<Verdict>,
@@ -112,7 +112,7 @@ impl Trace {
                 continue;
             };
             let difference = (value.into() - other.into()).abs();
-            // As the method itself decides, which takes theta as the map's own type.
+            // As the method itself decides, with theta as the map's own type.
             let is_linked =
                 Connectivity::new(map.validity(), self.params.theta).is_ok_and(|rule| rule.close(value, other));
             if !is_linked && self.nearest.is_none_or(|nearest| difference < nearest) {
@@ -195,7 +195,8 @@ impl Trace {
         }
     }
 
-    /// Thetas that link it to one more neighbour, or what is around it to more, up to four times that.
+    /// Values of theta from the least that links the pixel to one more neighbour up to four times that, which link
+    /// more of what is around it.
     fn thetas(&self) -> Vec<Change> {
         let least = self.nearest.unwrap_or(self.params.theta).max(self.params.theta);
         [1.0, 1.5, 2.0, 3.0, 4.0].map(|factor| vec![("theta", rounded_up(factor * least))]).to_vec()

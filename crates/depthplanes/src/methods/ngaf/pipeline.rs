@@ -31,16 +31,16 @@ impl Runner {
     }
 }
 
-/// Told of a run as it goes on.
+/// Observes a run.
 pub(super) trait Observer {
-    /// Large groups are selected from the map as it was grouped.
+    /// Large groups were selected from the map as it was grouped.
     fn selected<T: Pixel>(&mut self, map: &DepthView<'_, T>, groups: &Groups, selection: &Selection);
 
-    /// They are described; our own conditions have dropped none yet.
+    /// They were described; our own conditions have dropped none yet.
     fn described(&mut self, tallies: &[PlaneSums]);
 }
 
-/// Nobody looks.
+/// No observer.
 impl Observer for () {
     fn selected<T: Pixel>(&mut self, _: &DepthView<'_, T>, _: &Groups, _: &Selection) {}
 

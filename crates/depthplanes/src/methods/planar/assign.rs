@@ -1,8 +1,8 @@
 //! Stage "assign": every pixel goes to the plane that it lies on.
 //!
-//! In: the map in q, the regions of its tiles. Out: a region image, 0 = none, else region + 1. Pixels are looked at in
-//! blocks of 8 x 8. Where all tiles around are of one region nothing is to be decided. Elsewhere each pixel is held
-//! against the planes of the tiles around it; where two planes meet at a crease, both explain the
+//! In: the map in q, the regions of its tiles. Out: a region image, 0 = none, else region + 1. Pixels are looked at
+//! in blocks of 8 x 8. Where all tiles around a block belong to one region, nothing is to be decided. Elsewhere each
+//! pixel is compared with the planes of the tiles around it; where two planes meet at a crease, both explain the
 //! pixels near it, and the line where they meet, which is known exactly, decides.
 
 use super::block::{

@@ -1,6 +1,6 @@
-//! A block of 8 x 8 pixels, and which regions lie around it: the candidates that its pixels are held against.
+//! A block of 8 x 8 pixels, and which regions lie around it.
 //!
-//! In: the regions of tiles, and of blocks. Out: those that a block's pixels are held against.
+//! In: the regions of tiles, and of blocks. Out: the candidate regions whose planes a block's pixels are compared with.
 
 use super::grid::{Grid, NONE};
 use super::layout::{COLUMNS, SIDE};

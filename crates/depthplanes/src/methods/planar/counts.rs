@@ -1,8 +1,9 @@
 //! Depth in single precision that counts whole millimetres is worked on as that count.
 //!
-//! In: a map of floats. Out: the same numbers as `u16`, if each of them is a whole number of one of [`UNITS_M`], to within
-//! single precision. 1.234 m as a float is off by a fifty-millionth; through ten stages with limits that is enough to part
-//! another region here and there. Read back as 1,234 mm it gives what the map of millimetres gives, to the last bit.
+//! In: a map of floats. Out: the same numbers as `u16`, if each of them is a whole number of one of [`UNITS_M`], to
+//! within single precision. 1.234 m as a float is off by a fifty-millionth; after ten stages with thresholds that is
+//! enough to divide a region differently here and there. Read back as 1,234 mm, it gives what the map of millimetres
+//! gives, to the last bit.
 
 use super::enlarged::Source;
 use super::pipeline::Runner;

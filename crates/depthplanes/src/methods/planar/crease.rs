@@ -1,8 +1,8 @@
 //! Part of stage "assign": which of two planes gets the pixels of a block that both explain.
 //!
-//! In: the squared distances of the block's pixels from either. Out: for each plane where the other goes before it. Two
-//! planes that meet at a crease both explain the pixels near it; the line where they meet decides, unless the pixels
-//! themselves say otherwise.
+//! In: the squared distances of the block's pixels from either plane. Out: for each plane, the pixels where the other
+//! takes precedence. Two planes that meet at a crease both explain the pixels near it; the line where they meet
+//! decides, unless the pixels themselves say otherwise.
 
 use super::block::{DU, DV, Local, PIXELS, Pixels};
 use super::region::Region;

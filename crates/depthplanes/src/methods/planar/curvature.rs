@@ -1,11 +1,12 @@
-//! Signs that a surface is curved: how regions bow, and how the surface turns beyond their borders.
+//! Evidence that a surface is curved: how regions bow, and how the surface goes on beyond their borders.
 //!
-//! In: regions of cells. Out: for each region what a quadratic of its cell means explains beyond its plane, on the coarsest
-//! grid that shows its shape ([`Bows`]); how many times the smooth part of the error is that was estimated, as large regions
-//! show it ([`Shown`]); and beyond how much of a border the surface goes on without a step, at a small angle to the region's
-//! plane ([`Border`]). Second differences over a few tiles see little of an error that is smooth over hundreds of pixels; a
-//! wall that was merged bit by bit shows it. Meshes of cushions and lamps are made of facets, each exactly flat, and growth
-//! makes them of a ball that is known to within little noise; a box's face ends in steps and right angles.
+//! In: regions of cells. Out: for each region, what a quadratic through its cell means explains beyond its plane, on
+//! the coarsest grid that shows its shape ([`Bows`]); by which factor the smooth part of the error, as large regions
+//! show it, exceeds its estimate ([`Shown`]); and beyond how much of a border the surface goes on without a step, at
+//! a small angle to the region's plane ([`Border`]). Second differences over a few tiles see little of an error that
+//! is smooth over hundreds of pixels; a wall that was merged bit by bit shows it. Meshes of cushions and lamps are
+//! made of facets, each exactly flat, and growth makes facets of a ball whose depth has little noise; the face of a
+//! box ends in steps and right angles.
 
 use super::grid::{Grid, NONE, Place};
 use super::pyramid::Pyramid;

@@ -1,10 +1,11 @@
 //! Stage "judge": facets of curved surfaces are told from planes.
 //!
-//! In: regions of cells and the edges of their adjacency graph. Out: which regions are curved. Growth cuts a ball or a column
-//! into facets, each flat to within the noise. Five kinds of evidence tell them ([`Evidence`]). A region's own cell means bow: a
-//! quadratic explains more of them than chance would. Across the edge of two facets, or through a small facet and what
-//! is around it, one quadratic runs on smoothly, while the crease of two planes leaves it far off: the best
-//! parabola through a roof misses its ridge by 3/16 of the height. And a small region continues a curved one.
+//! In: regions of cells and the edges of their adjacency graph. Out: which regions are curved. Growth cuts a ball or
+//! a column into facets, each flat to within the noise. Five kinds of evidence tell facets from planes
+//! ([`Evidence`]). The means of a region's own cells bow: a quadratic explains more of them than chance would. Across
+//! the edge of two facets, or through a small facet and what is around it, one quadratic runs on smoothly, while the
+//! crease of two planes leaves it far off: the best parabola through a roof misses its ridge by 3/16 of the height.
+//! And beyond its border, or where it meets neighbours of its size, the surface turns gently.
 
 use super::curvature::{Border, Bows, Frame, add_run};
 use super::grid::{NONE, Place};

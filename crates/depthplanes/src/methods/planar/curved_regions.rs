@@ -1,8 +1,8 @@
-//! Surfaces that bend, as regions of their own; only where they are asked for.
+//! Curved surfaces as regions of their own, only where they are asked for.
 //!
 //! In: the regions of tiles, of which some are facets of curved surfaces. Out: connected regions of facets, pixel by
-//! pixel. Facets side by side are one surface unless there is a step between them; a pixel that a plane takes is
-//! not theirs. As of planes, a region has more than `min` pixels.
+//! pixel. Neighbouring facets are one surface unless there is a step between them; a pixel that a plane takes is not
+//! theirs. As with planes, a region has more than `min` pixels.
 
 use super::curved::are_apart;
 use super::merge::Edge;

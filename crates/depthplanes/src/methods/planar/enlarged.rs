@@ -1,9 +1,9 @@
-//! Maps that were enlarged by repeating pixels are worked on as they were before.
+//! Maps that were enlarged by repeating pixels are worked on at their original size.
 //!
-//! In: a map. Out: its detection. Of an enlarged map ([`EnlargementFinder`]) the stages see the source: one value a pixel,
-//! seen by a camera of as many pixels. Its planes are then painted on the whole map, grouped, selected and fitted there,
-//! so that `min`, areas and places are those of the map that was given. Repeated pixels say no more than one: errors of
-//! planes are those of the source's pixels.
+//! In: a map. Out: its detection. For an enlarged map ([`EnlargementFinder`]) the stages see the source: one value a
+//! pixel, seen by a camera of as many pixels. Its planes are then painted on the whole map, grouped, selected and
+//! fitted there, so that `min`, areas and places are those of the map that was given. Repeated pixels say no more
+//! than one: errors of planes are those of the source's pixels.
 
 use super::curved_regions::curved_of;
 use super::explain::explain;

@@ -1,7 +1,7 @@
 //! Why a pixel has a plane or none.
 //!
-//! In: a run of the method that is watched at a few checkpoints. Out: an [`Explanation`]: what was seen ([`Trace`]), the verdict,
-//! and changes of parameters that were tried.
+//! In: a run of the method that is observed at a few checkpoints. Out: an [`Explanation`]: what was seen ([`Trace`]),
+//! the verdict, and changes of parameters that were tried.
 
 use super::grow::fewest;
 use super::parameters::Planar;

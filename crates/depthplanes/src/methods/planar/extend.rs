@@ -1,11 +1,11 @@
-//! Stage "assign", second part: planes extend along strips that are too thin for a tile, and regions whose pixels touch and
-//! that one plane explains become one.
+//! Stage "assign", second part: planes extend along strips that are too thin for a tile, and regions become one whose
+//! pixels touch and which one plane explains.
 //!
-//! In: the map in q and its region image. Out: the image, in which a pixel that has no region but a neighbour on a plane
-//! goes to that plane if it lies on it, and so do its own neighbours: neighbour grouping (section 3c) on the distance
-//! from the plane instead of on the value. Blocks ask only the planes of tiles nearby; the floor below a ball at the
-//! map's edge has none there. Merging looked at tiles; on a strip thinner than a tile two pieces of a floor may meet that
-//! had no tiles side by side.
+//! In: the map in q and its region image. Out: the image, in which a pixel without a region that has a neighbour on a
+//! plane goes to that plane if it lies on it, and so on from pixel to pixel: neighbour grouping (section 3c) by the
+//! distance from the plane instead of by the value. Blocks ask only the planes of tiles nearby; the floor below a
+//! ball at the map's edge has none there. Merging looked at tiles; on a strip thinner than a tile, two pieces of a
+//! floor may meet that had no tiles side by side.
 
 use super::layout::{AffineMap, ROWS, finer, for_each_band};
 use super::merge::merge_cost;

@@ -1,7 +1,7 @@
 //! Cells of one size, side by side, and what is known of each.
 //!
-//! A cell knows how its pixels lie, its least-squares plane and the squared residuals about it, which give the
-//! residuals about any other plane without a look at a pixel.
+//! A cell knows where its pixels lie, its least-squares plane and the squared residuals about it. These give the
+//! residuals about any other plane without another look at the pixels.
 
 use super::layout::AffineMap;
 use super::thresholds::{FLAT, JOIN, limit};

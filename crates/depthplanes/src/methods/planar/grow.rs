@@ -1,11 +1,11 @@
 //! Stage "grow": cells that lie on one plane become a region.
 //!
-//! In: the pyramid of a map. Out: for every tile its region, and every region's sums and plane. Growth
-//! goes from the coarsest cells to the finest: large flat cells give regions whose planes are
-//! well known before the small cells along the borders are asked. A cell joins by its squared residuals
-//! about the region's plane, which its sums give without touching a pixel; among cells of one size, seeds are
-//! taken in order of their own scatter. A large map is grown over band by band ([`super::layout`]);
-//! regions that a band's edge cuts are merged as any others are (stage "merge").
+//! In: the pyramid of a map. Out: for every tile its region, and every region's sums and plane. Growth goes from the
+//! coarsest cells to the finest: large flat cells give regions whose planes are well known before the small cells
+//! along the borders are asked. A cell joins a region by its squared residuals about the region's plane, which its
+//! sums give without touching a pixel; among cells of one size, those that scatter least are the first seeds. A large
+//! map is grown over band by band ([`super::layout`]); regions that a band's edge cuts are merged as any others are
+//! (stage "merge").
 
 use super::grid::{Cell, Grid, NONE, Place};
 use super::layout::{LANES, LEVELS, SIDE, for_each_band};

@@ -1,9 +1,9 @@
 //! How a map lies in memory: q in rows with room for whole cells, tiles and larger cells, and the bands of a large map.
 //!
-//! In: a map and its space. Out: q for every pixel in rows of [`AffineMap::stride`], with room for whole
-//! blocks of tiles around it, so that no later stage has to mind the map's edge; and ranges of rows ([`cut_bands`]) that several
-//! stages work on as if each were a map, and then along their edges. The map's size alone decides on these, so that the
-//! answer is the same on any number of threads.
+//! In: a map and its space. Out: q for every pixel in rows of [`AffineMap::stride`], with room for whole blocks of
+//! tiles around it, so that no later stage has to treat the map's edge specially; and ranges of rows ([`cut_bands`]).
+//! Several stages work on each such band as if it were a map, and then along the bands' edges. Rows and bands depend
+//! on the map's size alone, so that the answer is the same on any number of threads.
 
 use crate::map::{DepthView, Pixel, Validity};
 use crate::noise::{LARGEST_Q, Space};

@@ -1,7 +1,7 @@
 //! Stage "merge": regions that one plane explains as well as two become one.
 //!
-//! In: regions as they grew, and the tiles' region numbers. Out: fewer regions, and the edges that lie side
-//! by side with the place where they touch.
+//! In: regions as they grew, and the tiles' region numbers. Out: fewer regions, and the edges between neighbouring
+//! ones with the place where they touch.
 
 use super::grid::{Grid, NONE};
 use super::grow::Regions;

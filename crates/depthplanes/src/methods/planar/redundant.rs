@@ -1,7 +1,7 @@
-//! Stage "judge": regions that are no surface of their own go.
+//! Stage "judge": regions that are no surface of their own are removed.
 //!
-//! In: regions and the edges of their adjacency graph. Out: fewer regions. Cells across the crease of two planes make a strip
-//! that is flat to within the noise; each of its pixels lies on one plane or the other.
+//! In: regions and the edges of their adjacency graph. Out: fewer regions. Cells across the crease of two planes make
+//! a region that is flat to within the noise, though each of its pixels lies on one plane or the other.
 
 use super::grid::Grid;
 use super::layout::{AffineMap, SIDE};

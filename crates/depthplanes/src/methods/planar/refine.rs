@@ -1,9 +1,9 @@
 //! Stage "grow", last part: tiles on borders go over to the region beside them whose plane they suit better.
 //!
-//! In: regions as they grew, and the tiles' region numbers. Out: the same regions with other borders. Growth goes on over a
-//! shallow crease for as long as noise hides that the surface has turned off, and what began later beyond the crease is
-//! left with less than its own, or with tiles of both planes, which bow. Once both planes are known they tell whose
-//! a tile is.
+//! In: regions as they grew, and the tiles' region numbers. Out: the same regions with other borders. Growth goes on
+//! across a shallow crease for as long as noise hides that the surface has changed direction. The region that began
+//! later beyond the crease is then left with less than its own, or with tiles of both planes, which bow. Once both
+//! planes are known, they tell which of them a tile lies on.
 
 use super::grid::{Cell, Grid, NONE, Place};
 use super::layout::for_each_band;

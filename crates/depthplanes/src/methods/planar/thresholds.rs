@@ -1,10 +1,10 @@
 //! What the stages hold their statistics against, in one place.
 //!
-//! Noise is in two parts everywhere: a pixel's own (`variance`: white error and rounding), which averages out, and the
-//! smooth part (`smooth`), which all pixels of a surface's patch share. A sum of squares over n pixels may so be
-//! `chi * variance + deviations^2 * n * smooth`; all that follows are these two factors for one question each, and
-//! angles. Those without another reason were chosen by hand with the recorded frames of `eval real` and the made-up rooms
-//! in view: on these the figures flatter, and no other frames have told yet.
+//! Noise is in two parts everywhere: a pixel's own (`variance`: white error and rounding), which averages out, and
+//! the smooth part (`smooth`), which all pixels of a patch share. A sum of squared residuals over n pixels may
+//! therefore be `chi * variance + deviations^2 * n * smooth`; all constants below are these two factors, for one
+//! question each, and angles. Those without another reason were chosen by hand with the recorded frames of `eval
+//! real` and the synthetic rooms in view: the results on these flatter, and no other frames have confirmed them yet.
 
 /// What squares may be: so many variances in all, and for each pixel so many of the smooth part.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! What the stages of a run saw of one pixel.
 //!
-//! In: a run at its [`Checkpoint`]s, and what came of it. Out: findings for an explanation. What the stages leave in their buffers
-//! is read as they go; nothing is kept for it in an ordinary run.
+//! In: a run at its [`Checkpoint`]s, and what came of it. Out: findings for an explanation. They are read from what
+//! the stages leave in their buffers; nothing is kept for it in an ordinary run.
 
 use super::block::{PixelCandidates, candidates_of_pixel};
 use super::curved::Evidence;

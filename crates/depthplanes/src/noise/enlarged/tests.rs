@@ -12,7 +12,7 @@ fn source(noise_mm: f64) -> Vec<u16> {
     (0..64 * 48).map(|place| (at(place % 64, place / 64) + noise_mm * random.gaussian()).round() as u16).collect()
 }
 
-/// A map enlarged to so many pixels, each pixel that of the source under its left edge (0) or its centre (0.5).
+/// A map enlarged to so many pixels; each shows the source pixel under its left edge (0) or its centre (0.5).
 fn enlarged(source: &[u16], [width, height]: [usize; 2], edge: f64) -> Vec<u16> {
     let place = |at: usize, pixels: usize, length: usize| ((at as f64 + edge) * pixels as f64 / length as f64) as usize;
     (0..width * height).map(|at| source[place(at / width, 48, height) * 64 + place(at % width, 64, width)]).collect()
@@ -58,7 +58,7 @@ fn missing_pixels_are_alike() {
     assert_eq!(EnlargementFinder::default().find(&map).map(|found| found.factor), Some([3.0, 3.0]));
 }
 
-/// Maps that were not enlarged, by what they are.
+/// Maps that were not enlarged, with their descriptions.
 fn ordinary() -> Vec<(&'static str, Vec<u16>)> {
     let [width, height] = [320, 240];
     let map = |of: &dyn Fn(usize, usize) -> f64| {

@@ -3,8 +3,8 @@
 use super::sample::Counted;
 use crate::noise::space::Space;
 
-/// Gaps of a stretch that tell its step. Flat surfaces on which every pixel has one value make fewer, and theirs are
-/// jumps in depth.
+/// Fewest gaps of a stretch that tell its step. Flat surfaces on which every pixel has one value make fewer gaps, and
+/// these are jumps in depth.
 pub(super) const LEAST: usize = 8;
 
 /// A value that occurs.
@@ -12,9 +12,9 @@ pub(super) const LEAST: usize = 8;
 pub(super) struct Level {
     pub(super) value: f64,
     pub(super) q: f64,
-    /// How often it starts anew: in rows and in columns, the smaller of both.
+    /// How often it starts anew in rows or in columns, whichever is less.
     pub(super) repeats: u32,
-    /// The sum of both.
+    /// How often it starts anew in rows and in columns together.
     pub(super) weight: u32,
 }
 

@@ -1,7 +1,7 @@
 //! Which values occur in a map, and how often.
 //!
-//! In: a map. Out: the values of pixels on a lattice over it, ascending, each with how often it starts anew along rows
-//! and along columns of the lattice. On a wall that is level every row has one value: it starts once in its row, and
+//! In: a map. Out: the values of pixels on a lattice over it, ascending, each with how often it starts anew along
+//! rows and along columns of the lattice. On a level wall every row has one value: it starts once in its row, and
 //! once in every column.
 
 use crate::map::{DepthView, Pixel};
@@ -15,14 +15,14 @@ const PIXELS: usize = 16_000;
 const PLACES: usize = 1 << 15;
 /// Most values that are told apart; three quarters of the places.
 pub(super) const MOST: usize = PLACES / 4 * 3;
-/// Times that values have to start on average, or the sample is thin.
+/// Least mean number of starts of a value; with fewer the sample is thin.
 const OFTEN: usize = 3;
 /// Steps of the lattice between those pixels that are looked at first.
 const FIRST: usize = 4;
-/// Fewest different values among them that tell a thin sample.
+/// Fewest different values among the first pixels that can tell a thin sample.
 const LEAST: usize = 100;
-/// Share of them that differ, or the sample is thin: where a value occurs [`OFTEN`] times in the whole of it, one in ten
-/// of a sixteenth meets its like.
+/// Share of different values among the first pixels above which the sample is thin: where a value occurs [`OFTEN`]
+/// times in the whole sample, one in ten pixels of a sixteenth of it meets an equal one.
 const DIFFERENT: f64 = 0.9;
 /// Most values of a thin sample that are looked at.
 const FEW: usize = 1 << 11;
@@ -40,7 +40,7 @@ pub(super) struct Counted {
 pub(super) struct Sample {
     /// Open addressing: the bits of a value, 0 where none is.
     values: Vec<u32>,
-    /// How often it starts in columns, and 65,536 times that in rows.
+    /// How often it starts in columns, plus 65,536 times how often it starts in rows.
     counts: Vec<u32>,
     /// Places that are taken.
     taken: Vec<u32>,
@@ -53,7 +53,7 @@ pub(super) struct Sample {
 }
 
 impl Sample {
-    /// Looks at a map: at a few of its pixels, and at more unless most of the few differ.
+    /// Looks at a few pixels of a map, and at more unless most of the few differ.
     pub(super) fn take<T: Pixel>(&mut self, map: &DepthView<'_, T>) {
         let step = map.area().div_ceil(PIXELS).isqrt();
         let step = if step * step * PIXELS < map.area() { step + 1 } else { step };
@@ -65,7 +65,7 @@ impl Sample {
         }
     }
 
-    /// Looks at a lattice of pixels, the step from each to the next being given; how many are valid.
+    /// Looks at a lattice of pixels with the given step; returns how many are valid.
     fn look<T: Pixel>(&mut self, map: &DepthView<'_, T>, step: usize) -> usize {
         self.clear();
         reserve_to(&mut self.above, map.width());
@@ -104,8 +104,8 @@ impl Sample {
 
     #[inline(always)]
     fn count(&mut self, bits: u32, starts: u32) {
-        // A value that goes on counts nothing: without a branch, which would rarely be foretold.
-        // Knuth, The Art of Computer Programming 3, section 6.4: by the golden ratio.
+        // A value that goes on adds 0 to its count, without a branch, which would rarely be predicted. The place is a
+        // multiplicative hash by the golden ratio (Knuth, The Art of Computer Programming 3, section 6.4).
         let mut place = (bits.wrapping_mul(0x9e37_79b1) >> (32 - PLACES.ilog2())) as usize;
         self.starts += usize::from(starts > 0);
         loop {
@@ -132,8 +132,8 @@ impl Sample {
         self.is_thin
     }
 
-    /// The values that occur, ascending. Of a thin sample it is those of the eighth of an octave that has most: among
-    /// neighbours what they are multiples of is best seen.
+    /// The values that occur, ascending. Of a thin sample only those of the eighth of an octave that has most: what
+    /// values are multiples of shows best among close ones.
     pub(super) fn sorted(&mut self) -> impl Iterator<Item = Counted> {
         let fullest = if self.is_thin() { self.fullest() } else { None };
         let Sample { values, counts, taken, sorted, .. } = self;

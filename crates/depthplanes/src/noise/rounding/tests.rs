@@ -20,7 +20,7 @@ fn room(roll: f64) -> Vec<f64> {
     (0..WIDTH * HEIGHT).map(|place| at(place % WIDTH, place / WIDTH)).collect()
 }
 
-/// The same, each value changed by what is drawn for it.
+/// The values, each changed by what is drawn for it.
 fn noisy(values: &[f64], change: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     let mut random = Random::new(1);
     values.iter().map(|&value| change(value, random.gaussian())).collect()
@@ -41,7 +41,7 @@ fn f32s(values: &[f64]) -> Vec<f32> {
 /// Depths of the room where most of it lies.
 const DEPTHS_M: [f64; 6] = [1.9, 2.3, 2.7, 3.1, 3.5, 3.9];
 
-/// Holds the steps, metres, against those that a depth should have, within a part of them.
+/// Checks the steps, metres, against those that a depth should have, to within a share of them.
 #[track_caller]
 fn check(rounding: &Rounding, within: f64, step_m: impl Fn(f64) -> f64) {
     for z in DEPTHS_M {

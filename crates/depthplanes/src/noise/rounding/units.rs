@@ -1,14 +1,14 @@
 //! What all values of a map are multiples of.
 //!
-//! In: the values that occur. Out: the largest number, map units, whose multiples all of them are, to within single
-//! precision; 0 where there is none, as of true floats. Rounding is at least to that.
+//! In: the values that occur. Out: the largest number, map units, of which all of them are multiples to within single
+//! precision; 0 where there is none, as for true floats. The step of rounding is at least that.
 
 use super::level::{LEAST, Level};
 use crate::noise::space::Space;
 
-/// Gaps of more units say nothing: the unit is not known well enough.
+/// Gaps of more units than this say nothing: the unit is not known well enough.
 const FAR: f64 = 200.0;
-/// Fewest units of the last place in what is a unit: floats have smaller common divisors by chance.
+/// Smallest unit, in units of the last place of a value: floats have smaller common divisors by chance.
 const PLACES: f64 = 16.0;
 
 /// The common unit of levels that are sorted by q, map units: `least` or more.

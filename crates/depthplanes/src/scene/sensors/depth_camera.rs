@@ -1,8 +1,8 @@
-//! From exact depth to the map of a sensor that errs: one mechanism, a [`DepthCamera`] a sensor.
+//! From exact depth to the map of a sensor that errs: one mechanism, with a [`DepthCamera`] for each sensor.
 //!
-//! In: the exact picture, the sensor's row and random draws. Out: 16-bit pixels, 0 = missing. Edges
-//! move or mix, shadows, range and grazing angles make holes, the error is added where planes are
-//! affine, then the value is rounded and written.
+//! In: the exact picture, the sensor's row and random draws. Out: 16-bit pixels, 0 = missing. Edges move or mix;
+//! shadows, range and grazing angles make holes; the error is added where planes are affine; then the value is
+//! rounded and written.
 
 use super::edges::Edges;
 use super::error::ErrorModel;

@@ -23,7 +23,7 @@ pub(super) enum Edges {
     /// A matching window moves them by about 0.8 px, alike over small cells, so that edges are ragged
     /// rather than dusty.
     Ragged,
-    /// Next to a jump in depth every second pixel gathers light from both sides and reports a depth
+    /// Next to a jump in depth half of the pixels, drawn at random, gather light from both sides and report a depth
     /// between the two.
     Flying,
 }

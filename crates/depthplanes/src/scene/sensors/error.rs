@@ -15,10 +15,10 @@
 //! | stereo (8) | 1/m | 0.0039 | 0.0037 | 0.0033 | 0.0027 | 0.0019 |
 //! | white noise | share | 1 | 0.25 | 0.125 | 0.063 | 0.031 |
 //!
-//! [`Correlated`] adds up, in inverse depth or disparity: white noise, patches of a few and of tens
-//! of pixels ([`Field`]), and what a camera has in every frame alike, a bow (quadratic over the
-//! picture) and seams (a step along a column). The sum is rounded there, before it becomes a depth.
-//! The table is what `tests/sensors.rs` holds the made-up frames to, within a quarter.
+//! [`Correlated`] adds up, in inverse depth or disparity: white noise, patches of a few and of tens of pixels
+//! ([`Field`]), and the error that a camera has in every frame alike, a bow (quadratic over the picture) and seams
+//! (steps along a column). The sum is rounded there, before it becomes a depth. `tests/sensors.rs` holds synthetic
+//! frames to the table, within a quarter.
 
 use super::field::Field;
 use crate::scene::pose::{Camera, KINECT_FOCAL_PX};
@@ -27,9 +27,9 @@ use crate::util::random::Random;
 /// Distance of the nodes of the small and the large patches, pixels of a picture of 640 x 480. Our
 /// choice: of 4, 8, 16, 32 and 64 px these two suit the rows of the table best.
 const PATCHES_PX: [f64; 2] = [4.0, 32.0];
-/// Share of the deviation of either kind that is left in means over 16 x 16 px about the plane of a
-/// surface of 3,000 px and more, median over the planes of made-up rooms: means take away from the
-/// small ones, the plane from the large ones.
+/// Share of the deviation of either kind that is left in means over 16 x 16 px about the plane of a surface of 3,000
+/// px and more, median over the planes of synthetic rooms: averaging reduces the small patches, the plane takes up
+/// part of the large ones.
 const LEFT_OF_PATCHES: [f64; 2] = [0.22, 0.71];
 /// Half the width of a picture of 640 columns: the unit of the bow's coordinates.
 const HALF_WIDTH_PX: f64 = 320.0;
@@ -44,20 +44,18 @@ pub struct SensorError {
     /// Standard deviation of patches of a few pixels: in means over 4 x 4 px most of it is still
     /// there, in means over 16 x 16 px hardly any.
     pub short: f64,
-    /// Standard deviation of the part that does not average out over 16 x 16 px, about the
-    /// least-squares plane of a surface of 3,000 px and more (a median: what a surface is large
-    /// enough to show differs).
+    /// Standard deviation of the part that does not average out over 16 x 16 px, about the least-squares plane of a
+    /// surface of 3,000 px and more (a median: how much a surface shows depends on its size).
     pub smooth: f64,
-    /// What values are rounded to: the sensor's own step and that of the map, in squares.
+    /// What values are rounded to: the sensor's own step and that of the map, added in squares.
     pub step: f64,
 }
 
 impl SensorError {
-    /// Of a sensor that is exact.
+    /// The error of an exact sensor.
     pub const NONE: SensorError = SensorError { white: 0.0, short: 0.0, smooth: 0.0, step: 0.0 };
 
-    /// Standard deviation of what a pixel has for itself: the white part and the rounding's
-    /// step / sqrt(12).
+    /// Standard deviation of what a pixel does not share with others: the white part and the rounding's step / sqrt(12).
     pub fn pixel(&self) -> f64 {
         (self.white * self.white + self.step * self.step / 12.0).sqrt()
     }
@@ -67,9 +65,9 @@ impl SensorError {
 /// `sqrt(far^2 + (relative / z)^2)`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
-    /// Where the range is long, in units of the row.
+    /// At long range, in units of the row.
     pub(super) far: f64,
-    /// Share of the depth, which is the larger of the two where the range is short.
+    /// As a share of the depth, which is the larger part at short range.
     pub(super) relative: f64,
 }
 
@@ -89,7 +87,7 @@ pub(super) struct Correlated {
     pub(super) bow: [f64; 3],
     /// Column and step there: further right all values are larger by it.
     pub(super) seams: &'static [(f64, f64)],
-    /// Standard deviation of bow and seams about the planes of made-up rooms, a median.
+    /// Standard deviation of bow and seams about the planes of synthetic rooms, a median.
     pub(super) fixed: f64,
     /// What values are rounded to; 0 = nothing.
     pub(super) step: f64,
@@ -98,15 +96,14 @@ pub(super) struct Correlated {
 /// How a sensor errs.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ErrorModel {
-    /// White noise: the measured depth from the exact one and a draw of deviation 1, and what that
-    /// comes to.
+    /// White noise: the measured depth, given the exact one and a draw of deviation 1; and the error that this amounts to.
     White { depth_m: fn(f64, f64) -> f64, stated: fn(f64) -> SensorError },
-    /// All the rest.
+    /// Any other error.
     Correlated(Correlated),
 }
 
 impl ErrorModel {
-    /// What it comes to at a depth in metres.
+    /// The error at a depth in metres.
     pub(super) fn at(&self, depth_m: f64) -> SensorError {
         match self {
             ErrorModel::White { stated, .. } => stated(depth_m),
@@ -190,7 +187,7 @@ impl Drawn {
 }
 
 impl FrameError {
-    /// Before the pixels of row `v`.
+    /// Prepares for the pixels of row `v`.
     pub(super) fn start_row(&mut self, v: usize) {
         if let FrameError::Correlated(drawn) = self {
             drawn.v = v;

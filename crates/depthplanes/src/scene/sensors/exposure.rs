@@ -12,10 +12,9 @@ pub(in crate::scene) struct Exposure<'a> {
 }
 
 impl Exposure<'_> {
-    /// Which pixels show points that an eye `baseline_m` to the right of the camera does not see
-    /// because something stands between: shadows of a projector there, occlusions of a second
-    /// camera there. They lie to the left of near things. With `bounded`, points left or right of
-    /// the other eye's own picture count as hidden too.
+    /// Which pixels show points that an eye `baseline_m` to the right of the camera does not see because something
+    /// stands between: shadows if a projector is there, occlusions if a second camera is there. They lie to the left
+    /// of near things. With `bounded`, points left or right of the other eye's own picture count as hidden too.
     ///
     /// In a rectified pair the ray from the other eye stays in the same row, at column
     /// `u - fx baseline / z`.

@@ -1,8 +1,8 @@
 //! A smooth random field over a picture: the patches in which neighbouring pixels err alike.
 //!
-//! In: a length and random draws. Out: a value for each pixel, mean 0, standard deviation 1, the same
-//! on every platform. Gaussian draws on a lattice are blended by cubic B-splines: polynomials alone,
-//! and unlike linear blends as strong between the nodes as on them (within a tenth of the variance).
+//! In: a length and random draws. Out: a value for each pixel, mean 0, standard deviation 1, the same on every
+//! platform. Gaussian draws on a lattice are blended by cubic B-splines. These are polynomials alone, and unlike
+//! linear blends as strong between the nodes as on them (within a tenth of the variance).
 
 use crate::util::random::Random;
 

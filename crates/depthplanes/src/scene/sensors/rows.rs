@@ -1,9 +1,8 @@
 //! The sensors that err, a row each.
 //!
-//! The five of real structure are set so that made-up rooms have the table of
-//! [`super::error`]; `tests/sensors.rs` measures it. Where no source is given a number is fitted to
-//! that table. Lengths are pixels of a picture of 640 x 480; a row's error is in pixels of the
-//! sensor's own disparity, or in 1/m for time of flight.
+//! The five sensors of real structure are set so that synthetic rooms have the table of [`super::error`];
+//! `tests/sensors.rs` measures it. Where no source is given, a number is fitted to that table. Lengths are pixels of
+//! a picture of 640 x 480; a row's error is in pixels of the sensor's own disparity, or in 1/m for time of flight.
 //!
 //! Not modelled: reflectivity, sunlight, multipath by geometry, wiggling, error in time.
 
@@ -31,13 +30,13 @@ pub(super) const STEREO_UNITS: f64 = 256.0;
 /// Kinect v1: a pattern projected from 7.5 cm to the right, matched in a window, in steps of 1/8 px:
 /// `z = 8 f b / (doff - kd)` for a whole number `kd` (ROS kinect_calibration/technical).
 ///
-/// - White part: with the steps 0.042 px, what neighbouring pixels differ by on 75 recorded planes.
+/// - White part: 0.042 px together with the steps, what neighbouring pixels differ by on 75 recorded planes.
 /// - Growth: 0.0025 to 0.0020 1/m at 1.2 to 2.6 m, 0.0036 at 0.7 m on the same planes.
 /// - Bow: fitted to ten planes of 7-Scenes' camera; other cameras have it as strong or half as
 ///   strong, with either sign.
-/// - Seams: 0.1 px along column 320, found in 7-Scenes and in frames of another camera; the others
-///   stand in one of them.
-/// - Holes: the projector's shadow, cast geometrically; beyond 0.5 to 8 m; grazing angles.
+/// - Seams: 0.1 px along column 320, found in 7-Scenes and in frames of another camera; the others occur in one of
+///   them.
+/// - Holes: the projector's shadow, cast geometrically; outside of 0.5 to 8 m; grazing angles.
 pub(super) const KINECT: DepthCamera = DepthCamera {
     error: ErrorModel::Correlated(Correlated {
         units_m: KINECT_FOCAL_PX * KINECT_BASELINE_M,
@@ -74,7 +73,7 @@ pub(super) const KINECT_WHITE: DepthCamera = DepthCamera {
 ///
 /// - White part: shot noise (light falls with z^2), 0.0014 1/m, as neighbouring pixels differ on
 ///   recorded stairs; at short range 0.5 mm at 1 m (our choice).
-/// - Holes: beyond 0.5 to 4.5 m (the maker's range); grazing angles.
+/// - Holes: outside of 0.5 to 4.5 m (the maker's range); grazing angles.
 pub(super) const KINECT2: DepthCamera = DepthCamera {
     range_m: [0.5, 4.5],
     error: ErrorModel::Correlated(Correlated {
@@ -92,7 +91,7 @@ pub(super) const KINECT2: DepthCamera = DepthCamera {
 
 /// Azure Kinect, narrow field, binned: time of flight, nearly all of its error smooth.
 ///
-/// - Holes: beyond 0.5 to 5.46 m (the maker's range); grazing angles.
+/// - Holes: outside of 0.5 to 5.46 m (the maker's range); grazing angles.
 pub(super) const AZURE: DepthCamera = DepthCamera {
     error: ErrorModel::Correlated(Correlated {
         units_m: 1.0,
@@ -125,8 +124,8 @@ pub(super) const TOF_WHITE: DepthCamera = DepthCamera {
 /// RealSense D4xx: two infrared cameras 50 mm apart, matched in a window, disparity in steps of
 /// 1/32 px (the maker's), f = 385 px at 640 x 480: recorded frames have the steps that follow.
 ///
-/// - Holes: what the right camera does not see; beyond 0.3 to 10 m (the maker's range, our choice
-///   of its ends); grazing angles.
+/// - Holes: what the right camera does not see; outside of 0.3 to 10 m (the maker's range, our choice of its ends);
+///   grazing angles.
 pub(super) const REALSENSE: DepthCamera = DepthCamera {
     range_m: [0.3, 10.0],
     shadow: Some(Shadow { baseline_m: 0.05, bounded: true }),
@@ -148,7 +147,7 @@ pub(super) const REALSENSE: DepthCamera = DepthCamera {
 /// A stereo pair that is carried about, 1/256 px in 16 bits; hardly any white part, for the matcher
 /// smooths. The recorded frames have no coarser step than that of their file.
 ///
-/// - Holes: what the right camera does not see; beyond 0.5 to 20 m (our choice); grazing angles.
+/// - Holes: what the right camera does not see; outside of 0.5 to 20 m (our choice); grazing angles.
 pub(super) const STEREO: DepthCamera = DepthCamera {
     range_m: [0.5, 20.0],
     shadow: Some(Shadow { baseline_m: STEREO_BASELINE_M, bounded: true }),
