@@ -93,18 +93,37 @@ fn ident(item: &Item) -> Option<&syn::Ident> {
     }
 }
 
-/// The paths that a `use` names.
-fn paths(tree: &UseTree) -> Vec<Vec<String>> {
+fn attributes(item: &Item) -> &[Attribute] {
+    match item {
+        Item::Struct(item) => &item.attrs,
+        Item::Enum(item) => &item.attrs,
+        _ => &[],
+    }
+}
+
+/// The traits that a `derive` names.
+fn derived(attribute: &Attribute) -> Vec<String> {
+    let text = attribute.meta.require_list().expect("traits in parentheses").tokens.to_string();
+    text.split(',').map(|name| name.trim().to_string()).filter(|name| !name.is_empty()).collect()
+}
+
+/// The paths that a `use` names, each with the name that it gives.
+fn named(tree: &UseTree) -> Vec<(Vec<String>, String)> {
+    let within = |first: &syn::Ident, rest: Vec<(Vec<String>, String)>| {
+        rest.into_iter().map(|(path, shown)| ([vec![first.to_string()], path].concat(), shown)).collect()
+    };
     match tree {
-        UseTree::Path(path) => {
-            let rest = paths(&path.tree);
-            rest.into_iter().map(|rest| [vec![path.ident.to_string()], rest].concat()).collect()
-        }
-        UseTree::Group(group) => group.items.iter().flat_map(paths).collect(),
-        UseTree::Name(name) => vec![vec![name.ident.to_string()]],
-        UseTree::Rename(name) => vec![vec![name.ident.to_string()]],
+        UseTree::Path(path) => within(&path.ident, named(&path.tree)),
+        UseTree::Group(group) => group.items.iter().flat_map(named).collect(),
+        UseTree::Name(name) => vec![(vec![name.ident.to_string()], name.ident.to_string())],
+        UseTree::Rename(name) => vec![(vec![name.ident.to_string()], name.rename.to_string())],
         UseTree::Glob(_) => panic!("a public `use` names what it takes"),
     }
+}
+
+/// The paths that a `use` names.
+fn paths(tree: &UseTree) -> Vec<Vec<String>> {
+    named(tree).into_iter().map(|(path, _)| path).collect()
 }
 
 fn is_public(visibility: &Visibility) -> bool {
@@ -126,10 +145,13 @@ fn text(tokens: &impl ToTokens) -> String {
         .fold(text, |text, (from, to)| text.replace(from, to))
 }
 
-/// Lists an item and what is public of it.
-fn list(sources: &Sources, place: &str, item: &Item, lines: &mut BTreeSet<String>) {
+/// Lists an item, under the name that it is shown by, and what is public of it.
+fn list(sources: &Sources, place: &str, shown: &str, item: &Item, lines: &mut BTreeSet<String>) {
     let name = ident(item).expect("it was found by its name").to_string();
-    let whole = format!("{place}::{name}");
+    let whole = format!("{place}::{shown}");
+    for name in attributes(item).iter().filter(|attribute| attribute.path().is_ident("derive")).flat_map(derived) {
+        lines.insert(format!("{whole} is {name}"));
+    }
     let grows = |attributes: &[Attribute]| {
         let may = attributes.iter().any(|attribute| attribute.path().is_ident("non_exhaustive"));
         if may { ", non-exhaustive" } else { "" }
@@ -164,7 +186,10 @@ fn list(sources: &Sources, place: &str, item: &Item, lines: &mut BTreeSet<String
                 }
             }
         }
-        Item::Fn(item) => drop(lines.insert(format!("{place}::{}", text(&item.sig)))),
+        Item::Fn(item) => {
+            let signature = text(&item.sig).replacen(&format!("fn {name}"), &format!("fn {shown}"), 1);
+            lines.insert(format!("{place}::{signature}"));
+        }
         Item::Const(item) => drop(lines.insert(format!("{whole} const: {}", text(&item.ty)))),
         Item::Static(item) => drop(lines.insert(format!("{whole} static: {}", text(&item.ty)))),
         Item::Type(item) => drop(lines.insert(format!("{whole} = {}", text(&item.ty)))),
@@ -211,13 +236,15 @@ fn list_module(sources: &Sources, module: &Module, place: &str, lines: &mut BTre
                 list_module(sources, &below, &format!("{place}::{name}"), lines);
             }
             Item::Use(uses) if is_public(&uses.vis) && !is_hidden(&uses.attrs) => {
-                for path in paths(&uses.tree) {
+                for (path, shown) in named(&uses.tree) {
                     let found = sources.resolve(module, &path).and_then(|(from, name)| sources.find(&from, &name));
-                    list(sources, place, found.unwrap_or_else(|| panic!("{place}: {path:?}")), lines);
+                    list(sources, place, &shown, found.unwrap_or_else(|| panic!("{place}: {path:?}")), lines);
                 }
             }
             Item::Macro(item) if item.attrs.iter().any(|attribute| attribute.path().is_ident("macro_export")) => {
-                lines.insert(format!("{place}::{} macro", item.ident.as_ref().unwrap()));
+                // Whatever module it stands in, it is named from the crate.
+                let root = place.split("::").next().unwrap_or(place);
+                lines.insert(format!("{root}::{} macro", item.ident.as_ref().unwrap()));
             }
             item => {
                 let is_open = match item {
@@ -231,7 +258,7 @@ fn list_module(sources: &Sources, module: &Module, place: &str, lines: &mut BTre
                     _ => false,
                 };
                 if is_open {
-                    list(sources, place, item, lines);
+                    list(sources, place, &ident(item).expect("it has a name").to_string(), item, lines);
                 }
             }
         }

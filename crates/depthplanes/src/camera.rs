@@ -119,6 +119,26 @@ impl Measure {
         Ok(Measure::InverseDepth { slope: pixels_per_unit / f_t, offset: doffs_px / f_t })
     }
 
+    /// That its numbers are accepted, however it was made.
+    ///
+    /// # Errors
+    /// [`Error::Camera`] as of the constructors.
+    pub(crate) fn check(&self) -> Result<()> {
+        match *self {
+            Measure::Depth { metres } => positive("metres per map unit", metres),
+            Measure::InverseDepth { slope, offset } => {
+                if !slope.is_finite() || slope == 0.0 {
+                    return Err(Error::Camera { name: "slope", given: slope, accepted: "a finite number, not 0" });
+                }
+                if !offset.is_finite() {
+                    return Err(Error::Camera { name: "offset", given: offset, accepted: "a finite number" });
+                }
+                Ok(())
+            }
+            Measure::Disparity => Ok(()),
+        }
+    }
+
     /// Inverse depth in 1/m of a map value; `None` where the measure is unknown or the value lies
     /// at or behind infinity.
     #[inline]

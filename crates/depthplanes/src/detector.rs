@@ -128,6 +128,7 @@ impl Detector {
     /// Finds planes in one map.
     ///
     /// # Errors
+    /// [`Error::Camera`] for a unit or a camera whose numbers mean nothing.
     /// [`Error::NotMetric`] if coplanar planes are to be joined, or a parameter is in metres, and the sensor is not known
     /// well enough for planes in metres.
     /// [`Error::TooManyPlanes`] if there are more planes than 16-bit labels can name.
@@ -144,6 +145,7 @@ impl Detector {
         map: impl Into<AnyView<'m>>,
         observer: &mut (dyn FnMut(&'static str) + Send),
     ) -> Result<&Detection> {
+        self.sensor.check()?;
         if self.joiner.is_some() {
             self.sensor.check_metric("merge-coplanar")?;
         }
@@ -177,6 +179,7 @@ impl Detector {
         if at[0] >= width || at[1] >= height {
             return Err(Error::Pixel { at, width, height });
         }
+        self.sensor.check()?;
         let mut job =
             Job { sensor: self.sensor, threads: self.threads, curved: false, joiner: None, observer: &mut |_| () };
         self.method.0.explain(map, &mut job, at)

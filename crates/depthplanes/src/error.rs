@@ -115,6 +115,13 @@ pub enum Error {
         /// Rows of the map.
         height: usize,
     },
+    /// Not one label for each pixel of the map.
+    Labels {
+        /// Labels given.
+        given: usize,
+        /// Pixels of the map.
+        pixels: usize,
+    },
     /// A truth and a prediction with different numbers of pixels.
     LabelCounts {
         /// Labels of the truth.
@@ -195,6 +202,9 @@ impl fmt::Display for Error {
                 width.saturating_sub(1),
                 height.saturating_sub(1)
             ),
+            Error::Labels { given, pixels } => {
+                write!(f, "{given} labels were given, the map has {pixels} pixels; give one label for each, row by row")
+            }
             Error::LabelCounts { truth, prediction } => write!(
                 f,
                 "the truth has {truth} labels and the prediction {prediction}; both must be label images of one size"

@@ -7,55 +7,66 @@ use crate::components::selection::LabelledRun;
 use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::map::{AnyView, DepthView, Pixel, with_view};
+use crate::noise::stated_noise;
 use crate::sensor::Sensor;
 use crate::statistics::{PlaneStatistics, Seen};
 
 /// Describes the planes of a label image, row by row, 0 = none. They get new labels, 1, 2, .. by decreasing number of
-/// pixels; pixels of the map that are missing lose theirs.
+/// pixels; pixels of the map that are missing lose theirs. Beside the detection: for each of its planes the label that it
+/// had.
 ///
 /// # Errors
-/// [`Error::Length`] unless there is a label for each pixel.
+/// [`Error::Labels`] unless there is a label for each pixel, [`Error::Camera`] for a sensor whose numbers mean nothing.
 ///
 /// ```
 /// use depthplanes::{DepthView, Sensor, describe_labels};
 /// let depth_mm: [u16; 8] = [1000, 1001, 1002, 2000, 1000, 1001, 1002, 0];
-/// let found = describe_labels(DepthView::new(&depth_mm, 4, 2)?, vec![7, 7, 7, 3, 7, 7, 7, 3], &Sensor::default())?;
+/// let labels = [3, 3, 3, 7, 3, 3, 3, 7];
+/// let (found, names) = describe_labels(DepthView::new(&depth_mm, 4, 2)?, &labels, &Sensor::default())?;
 /// assert_eq!(found.labels, [1, 1, 1, 2, 1, 1, 1, 0]);
+/// assert_eq!(names, [3, 7]); // `found.planes[0]` had label 3
 /// assert!((found.planes[0].fit.unwrap().gradient[0] - 1.0).abs() < 1e-9);
 /// # Ok::<(), depthplanes::Error>(())
 /// ```
-pub fn describe_labels<'m>(map: impl Into<AnyView<'m>>, labels: Vec<u16>, sensor: &Sensor) -> Result<Detection> {
+pub fn describe_labels<'m>(
+    map: impl Into<AnyView<'m>>,
+    labels: &[u16],
+    sensor: &Sensor,
+) -> Result<(Detection, Vec<u16>)> {
     let map = map.into();
     let pixels = map.width() * map.height();
     if labels.len() != pixels {
-        return Err(Error::Length { given: labels.len(), least: pixels, most: pixels });
+        return Err(Error::Labels { given: labels.len(), pixels });
     }
-    Ok(with_view!(map, map => described(&map, labels, sensor)))
+    sensor.check()?;
+    Ok(with_view!(map, map => described(&map, labels.to_vec(), sensor)))
 }
 
-fn described<T: Pixel>(map: &DepthView<'_, T>, mut labels: Vec<u16>, sensor: &Sensor) -> Detection {
+fn described<T: Pixel>(map: &DepthView<'_, T>, mut labels: Vec<u16>, sensor: &Sensor) -> (Detection, Vec<u16>) {
     let validity = map.validity();
     let pixels = labels.iter_mut().zip(map.rows().flatten());
     pixels.filter(|(_, value)| !validity.holds(**value)).for_each(|(label, _)| *label = 0);
-    by_size(&mut labels);
+    let names = by_size(&mut labels);
     let (width, height, valid_pixels) = (map.width(), map.height(), map.valid_pixels());
     let runs = runs(&labels, width);
-    let (mut describer, mut planes) = (PlaneStatistics::default(), Vec::new());
-    describer.tally(map, &runs, 0, sensor, 1);
-    let seen = Seen { sensor, noise: None, valid_pixels };
-    describer.describe(map, &runs, &seen, 1, &mut planes);
-    Detection { width, height, labels, planes, valid_pixels, ..Detection::default() }
+    let noise = stated_noise::<T>(sensor);
+    let (mut statistics, mut planes) = (PlaneStatistics::default(), Vec::new());
+    statistics.tally(map, &runs, 0, sensor, 1);
+    let seen = Seen { sensor, noise: noise.as_ref(), valid_pixels };
+    statistics.describe(map, &runs, &seen, 1, &mut planes);
+    (Detection { width, height, labels, planes, valid_pixels, ..Detection::default() }, names)
 }
 
-/// Renames labels: 1, 2, .. by decreasing number of pixels, as in a detection.
-fn by_size(labels: &mut [u16]) {
+/// Renames labels: 1, 2, .. by decreasing number of pixels. For each of these the name before.
+fn by_size(labels: &mut [u16]) -> Vec<u16> {
     let mut sizes = vec![0usize; usize::from(u16::MAX) + 1];
     labels.iter().for_each(|&label| sizes[usize::from(label)] += 1);
-    let mut order: Vec<usize> = (1..sizes.len()).filter(|&label| sizes[label] > 0).collect();
-    order.sort_by_key(|&label| std::cmp::Reverse(sizes[label]));
+    let mut order: Vec<u16> = (1..=u16::MAX).filter(|&label| sizes[usize::from(label)] > 0).collect();
+    order.sort_by_key(|&label| std::cmp::Reverse(sizes[usize::from(label)]));
     let mut names = vec![0u16; sizes.len()];
-    order.iter().zip(1..).for_each(|(&label, name)| names[label] = name);
+    order.iter().zip(1..).for_each(|(&label, name)| names[usize::from(label)] = name);
     labels.iter_mut().for_each(|label| *label = names[usize::from(*label)]);
+    order
 }
 
 /// Stretches of rows with the same label.
@@ -81,7 +92,7 @@ mod tests {
     #[test]
     fn planes_are_named_by_size_and_their_rows_are_cut_where_the_label_changes() {
         let mut labels = vec![9, 9, 4, 4, 4, 0, 7, 4];
-        by_size(&mut labels);
+        assert_eq!(by_size(&mut labels), [4, 9, 7]);
         assert_eq!(labels, [2, 2, 1, 1, 1, 0, 3, 1]);
         let found: Vec<[u32; 4]> =
             runs(&labels, 4).iter().map(|run| [run.v, run.u_first, run.u_last, run.label.into()]).collect();
@@ -95,13 +106,14 @@ mod tests {
         let mut values: Vec<f32> = (0..width * 10).map(value).collect();
         values[3] = f32::NAN;
         let view = DepthView::new(&values, width, 10).unwrap();
-        let found = describe_labels(view, vec![5; 200], &Sensor::default()).unwrap();
+        let (found, names) = describe_labels(view, &[5; 200], &Sensor::default()).unwrap();
+        assert_eq!(names, [5]);
         let fit = found.planes[0].fit.unwrap();
         assert_eq!((found.planes.len(), found.planes[0].pixel_count, found.labels[3]), (1, 199, 0));
         assert!((fit.gradient[0] - 3.0).abs() < 1e-9 && (fit.gradient[1] + 2.0).abs() < 1e-9, "{fit:?}");
         assert_eq!(
-            describe_labels(view, vec![5; 199], &Sensor::default()).unwrap_err(),
-            Error::Length { given: 199, least: 200, most: 200 }
+            describe_labels(view, &[5; 199], &Sensor::default()).unwrap_err(),
+            Error::Labels { given: 199, pixels: 200 }
         );
     }
 }

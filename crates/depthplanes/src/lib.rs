@@ -40,7 +40,7 @@
 //! | feature | |
 //! |---|---|
 //! | `parallel`, on by default | large maps on rayon's threads; the answer is the same for any number |
-//! | `serde` | detections, explanations, sensors and parameters can be written and read by serde |
+//! | `serde` | detections, sensors and parameters can be written and read by serde, explanations written; with serde_json, its feature `float_roundtrip` keeps every digit |
 //!
 //! It compiles for any target, WebAssembly among them, with `default-features = false`.
 

@@ -53,6 +53,16 @@ impl Sensor {
         Sensor { smooth_noise: smooth_noise.into(), ..self }
     }
 
+    /// That its numbers mean something, however it was made.
+    ///
+    /// # Errors
+    /// [`Error::Camera`] for a unit that is not finite and positive, a slope or a focal length that is not finite or 0, and
+    /// an offset or a principal point that is not finite.
+    pub(crate) fn check(&self) -> Result<()> {
+        self.measure.check()?;
+        self.intrinsics.map_or(Ok(()), |camera| Intrinsics::new(camera.fx, camera.fy, camera.cx, camera.cy).map(drop))
+    }
+
     /// Whether planes can be given in metres.
     ///
     /// # Errors

@@ -428,3 +428,30 @@ fn values_behind_infinity_leave_a_plane_without_metric_values() {
     };
     assert!(at(-0.09) && !at(-0.1) && !at(-5.0));
 }
+
+#[test]
+fn a_sensor_whose_numbers_mean_nothing_is_refused_however_it_was_made() {
+    let map = [1000u16; 64];
+    let view = DepthView::new(&map, 8, 8).unwrap();
+    let camera = Intrinsics { fx: 0.0, fy: 50.0, cx: 4.0, cy: 4.0 };
+    let wrong = [
+        Sensor::default().measure(Measure::Depth { metres: -1.0 }),
+        Sensor::default().measure(Measure::Depth { metres: f64::NAN }),
+        Sensor::default().measure(Measure::InverseDepth { slope: 0.0, offset: 0.0 }),
+        Sensor::default().measure(Measure::InverseDepth { slope: 1.0, offset: f64::INFINITY }),
+        Sensor::default().intrinsics(camera),
+        Sensor::default().intrinsics(Intrinsics { fx: 50.0, cx: f64::NAN, ..camera }),
+    ];
+    for sensor in wrong {
+        let mut detector = Detector::default().sensor(sensor);
+        let errors = [
+            detector.detect(view).unwrap_err(),
+            detector.explain(view, [1, 1]).unwrap_err(),
+            depthplanes::describe_labels(view, &[1; 64], &sensor).unwrap_err(),
+        ];
+        assert!(
+            errors.iter().all(|error| matches!(error, depthplanes::Error::Camera { .. })),
+            "{sensor:?}: {errors:?}"
+        );
+    }
+}

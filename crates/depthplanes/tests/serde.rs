@@ -42,3 +42,9 @@ fn a_table_that_is_none_is_refused() {
     let error = serde_json::from_str::<NoiseTable>("[[2.0, 0.1], [1.0, 0.1]]").unwrap_err().to_string();
     assert!(error.contains("each above the one before"), "{error}");
 }
+
+#[test]
+fn a_misspelt_parameter_is_refused() {
+    let error = serde_json::from_str::<Planar>(r#"{"inlier_treshold": 9.0}"#).unwrap_err().to_string();
+    assert!(error.contains("inlier_treshold") && error.contains("inlier_threshold"), "{error}");
+}

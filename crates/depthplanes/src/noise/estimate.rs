@@ -189,6 +189,12 @@ fn beside_rounding(errors: &Errors, [low, high]: [f64; 2], space: Space, roundin
     Errors { constant, square, ..*errors }.times(1.0, space)
 }
 
+/// The noise that is stated of a sensor, for a map of that pixel type; none if nothing is stated, or that of another kind of
+/// map.
+pub(crate) fn stated_noise<T: Pixel>(sensor: &Sensor) -> Option<NoiseModel> {
+    NoiseModel::new(sensor.measure, sensor.noise?, if T::IS_INTEGER { 1.0 } else { 0.0 })
+}
+
 /// The noise of one map, for methods that compare single pixels with planes: the sensor's noise as stated, or else
 /// both parts as the map shows them, since a pixel's error has both; 0 where the map shows nothing.
 pub(crate) fn noise_of_map<T: Pixel>(map: &DepthView<'_, T>, sensor: &Sensor) -> NoiseModel {

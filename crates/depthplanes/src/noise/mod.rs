@@ -18,8 +18,8 @@ mod table;
 
 pub use enlarged::{Enlargement, EnlargementFinder};
 pub(crate) use estimate::PADDED;
-pub(crate) use estimate::noise_of_map;
 pub use estimate::{Estimate, Estimator};
+pub(crate) use estimate::{noise_of_map, stated_noise};
 pub use model::{NoiseModel, Patch};
 pub use rounding::{Rounding, RoundingFinder};
 pub use sensor_noise::SensorNoise;

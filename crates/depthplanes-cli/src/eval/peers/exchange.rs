@@ -78,5 +78,5 @@ pub(super) fn take(frame: &Frame, file: &Path) -> Outcome<Detection> {
             frame.width, frame.height
         )));
     }
-    Ok(describe_labels(frame.view()?, labels, &frame.sensor)?)
+    Ok(describe_labels(frame.view()?, &labels, &frame.sensor)?.0)
 }

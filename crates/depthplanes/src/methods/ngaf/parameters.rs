@@ -87,7 +87,7 @@ pub(super) const PARAMS: &[Param] = &[
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(default))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Ngaf {
     /// Largest difference between neighbours of one group, map units, 0 and up (section 3c).

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::map::{DepthView, Pixel};
 use crate::methods::method::Job;
 use crate::methods::records::Records;
-use crate::noise::NoiseModel;
+use crate::noise::stated_noise;
 use crate::statistics::{PlaneStatistics, PlaneSums, Seen};
 
 /// The method with its memory.
@@ -77,10 +77,7 @@ impl Runner {
             runs = selection.runs(groups);
         }
         let valid = groups.valid_pixels();
-        let noise = job
-            .sensor
-            .noise
-            .and_then(|noise| NoiseModel::new(job.sensor.measure, noise, if T::IS_INTEGER { 1.0 } else { 0.0 }));
+        let noise = stated_noise::<T>(&job.sensor);
         let seen = Seen { sensor: &job.sensor, noise: noise.as_ref(), valid_pixels: valid };
         describer.describe(&map, runs, &seen, job.threads, &mut out.planes);
         let mut records =
