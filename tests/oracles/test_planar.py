@@ -49,7 +49,7 @@ def test_middlebury(program, data, tell, tmp_path):
     assert all(one["f_score"] >= 0.95 for one in found)
 
 
-@pytest.mark.parametrize("setting, least", [([], 0.86), (["--ray", "0.3"], 0.86), (["--ray", "0.05"], 0.5)])
+@pytest.mark.parametrize("setting, least", [([], 0.86), (["--lateral-noise", "0.3"], 0.86), (["--lateral-noise", "0.05"], 0.5)])
 def test_synpeb(program, data, tell, tmp_path, setting, least):
     found = []
     for depth in sorted(data.glob("gt_synpeb/*.pinhole_depth.png")):
@@ -69,9 +69,9 @@ def test_the_ray_of_a_scan_turned_into_a_picture_is_seen_and_planar_and_noise_ag
     command = [program, "explain", depth, "--encoding", "tum", "--at", "250,250", "--json"]
     told = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     # A place anywhere within a pixel is off by 1 / sqrt(12); the estimate keeps on the safe side of clutter.
-    assert 0.1 < noise["ray_px"] < 12**-0.5
-    (finding,) = (one for one in json.loads(told)["findings"] if one["subject"] == "how well its ray is known")
-    assert finding["quantities"][0]["value"] == pytest.approx(noise["ray_px"], rel=0.15)
+    assert 0.1 < noise["lateral_noise_px"] < 12**-0.5
+    (finding,) = (one for one in json.loads(told)["findings"] if one["subject"] == "lateral noise")
+    assert finding["quantities"][0]["value"] == pytest.approx(noise["lateral_noise_px"], rel=0.15)
 
 
 @pytest.mark.parametrize("setting, least", [([], 0.44), (["--noise", "0.004"], 0.42)])

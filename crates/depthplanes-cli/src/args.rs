@@ -201,7 +201,7 @@ fn explain_command() -> clap::Command {
     clap::Command::new("explain")
         .about("Says why a pixel belongs to a plane or to none: what each stage saw there, and what to change")
         .after_help(EXIT_CODES)
-        .arg(input.help("A file, - for standard input, or scene:SPEC for a made-up scene"))
+        .arg(input.help("A file, - for standard input, or scene:SPEC for a synthetic scene"))
         .arg(flags::pixel("at").required(true).help("The pixel: column and row, from 0"))
         .args(flags::reading())
         .arg(method_arg("method").long("method").default_value(methods::default().name).help("How to look for planes"))
@@ -223,7 +223,7 @@ fn output_flags() -> Vec<Arg> {
         flags::switch("legend", "Put a legend beside the overlay and numbers on its planes").help_heading("Output"),
         flags::switch(
             "curved",
-            "Report surfaces that bend as well: in the summary, in the JSON record and hatched on the overlay",
+            "Report curved surfaces as well: in the summary, in the JSON record and hatched on the overlay",
         )
         .help_heading("Output"),
         outlines_flag().help_heading("Output"),
@@ -287,7 +287,7 @@ fn score_command() -> clap::Command {
         .after_help(EXIT_CODES)
         .args([
             word("truth").value_name("TRUTH").help(
-                "Label image of the truth, 0 = no plane; a folder of them; or scene:SPEC for a made-up scene's truth",
+                "Label image of the truth, 0 = no plane; a folder of them; or scene:SPEC for a synthetic scene's truth",
             ),
             word("prediction")
                 .value_name("PRED")

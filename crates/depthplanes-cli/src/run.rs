@@ -82,7 +82,7 @@ impl Recipe {
             let others: Vec<&str> =
                 METHODS.iter().filter(|method| method.tells_curved).map(|method| method.name).collect();
             let message = format!(
-                "method `{}` does not tell surfaces that bend; --method {} does",
+                "method `{}` does not tell curved surfaces; --method {} does",
                 self.method.name,
                 others.join(", ")
             );

@@ -45,7 +45,7 @@ fn surfaces(curved: &Curved, detection: &Detection) -> String {
     let share = percent(pixels as f64 / detection.valid_pixels.max(1) as f64);
     match curved.regions.len() {
         1 => format!("1 surface that bends on {share} of the valid pixels\n"),
-        count => format!("{count} surfaces that bend on {share} of the valid pixels\n"),
+        count => format!("{count} curved surfaces on {share} of the valid pixels\n"),
     }
 }
 

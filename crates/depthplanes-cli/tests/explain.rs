@@ -54,6 +54,6 @@ fn a_method_that_does_not_tell_curved_surfaces_says_so() {
     let bench = Bench::with_map("curved_ngaf");
     for flags in [&["--curved"][..], &["--curved-labels", "c.png"]] {
         let ran = bench.run(&[&["detect", "map.pgm", "--method", "ngaf"], flags].concat());
-        assert!(ran.fails(2).contains("`ngaf` does not tell surfaces that bend; --method planar does"));
+        assert!(ran.fails(2).contains("`ngaf` does not tell curved surfaces; --method planar does"));
     }
 }

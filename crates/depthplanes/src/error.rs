@@ -189,7 +189,7 @@ impl fmt::Display for Error {
             Error::MixedMeasures => {
                 write!(
                     f,
-                    "the maps' numbers mean different things; one noise needs depth throughout, or disparity of one rig"
+                    "the maps' numbers mean different things; one noise estimate needs maps of depth only, or disparity of one rig only"
                 )
             }
             Error::TooManyPlanes { found } => write!(

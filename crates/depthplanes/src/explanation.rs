@@ -222,7 +222,7 @@ impl fmt::Display for Verdict {
                 "No plane here: its region of {} is smaller than half of min = {min}, and is not looked at further.",
                 counted(*pixels)
             ),
-            Verdict::Curved => write!(f, "No plane here: it is part of a surface that bends; see `detect --curved`."),
+            Verdict::Curved => write!(f, "No plane here: it is part of a curved surface; see `detect --curved`."),
             Verdict::EdgeOn => write!(
                 f,
                 "No plane here: the surface is seen edge-on, its depth doubles within 4 pixels. It may be what a sensor sees between two surfaces."

@@ -45,7 +45,7 @@ fn kernels_threads_and_repetition_change_no_byte() {
 }
 
 #[test]
-fn an_estimated_ray_is_the_same_on_each_kernel_and_any_number_of_threads() {
+fn an_estimated_lateral_noise_is_the_same_on_each_kernel_and_any_number_of_threads() {
     // A wall beside a floor and a ramp, with a lateral error of 0.3 pixels in the pixels' directions.
     let (width, height, mut random) = (400, 320, Random::new(11));
     let mut pixel = |at: usize| {
@@ -61,7 +61,7 @@ fn an_estimated_ray_is_the_same_on_each_kernel_and_any_number_of_threads() {
     let expected = on(1, Planar::default());
     assert_eq!(expected.planes.len(), 3);
     // The lateral error matters: without it, two of them fall to pieces.
-    assert_ne!(expected, on(1, Planar { ray: 0.05, ..Planar::default() }));
+    assert_ne!(expected, on(1, Planar { lateral_noise: 0.05, ..Planar::default() }));
     with_each_level(|kernel| {
         for threads in [1, 2, 4] {
             assert!(on(threads, Planar::default()) == expected, "{kernel}, {threads} threads");

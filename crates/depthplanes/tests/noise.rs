@@ -195,7 +195,7 @@ fn ray_of(inverse_depth: impl Fn(f64, f64) -> f64, ray: f64, sigma_m: impl Fn(f6
     let pixels: Vec<f32> = (0..width * height).map(&mut depth).collect();
     let mut estimator = Estimator::default();
     estimator.add(DepthView::new(&pixels, width, height).unwrap(), METRES).unwrap();
-    estimator.estimate().unwrap().ray
+    estimator.estimate().unwrap().lateral_noise_px
 }
 
 /// A wall, a floor that comes near, and a side that recedes steeply: the near surfaces are the slanted ones.

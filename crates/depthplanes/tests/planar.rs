@@ -233,7 +233,7 @@ fn a_slant_seen_along_rays_of_whole_pixels_is_one_plane_if_that_is_said() {
     let slant = |at: usize, off: f64| 300.0 + 2.0 * ((at % 160) as f64 + off) + 0.5 * (at / 160) as f64;
     let map: Vec<f32> = (0..160 * 120).map(|at| slant(at, random.between(-0.5, 0.5)) as f32).collect();
     let found = |ray: f64| {
-        let stated = Planar::default().noise(0.05).ray(ray);
+        let stated = Planar::default().noise(0.05).lateral_noise(ray);
         let sensor = Sensor::default().measure(Measure::Disparity);
         let mut detector = Detector::new(stated).unwrap().sensor(sensor);
         let found = detector.detect(DepthView::new(&map, 160, 120).unwrap()).unwrap();
@@ -252,7 +252,7 @@ fn a_slant_seen_along_rays_of_whole_pixels_is_one_plane_beside_a_wall_if_nothing
     };
     let map: Vec<f32> = (0..160 * 120).map(|at| value(at) as f32).collect();
     let found = |noise: f64, ray: f64| {
-        let stated = Planar::default().noise(noise).ray(ray);
+        let stated = Planar::default().noise(noise).lateral_noise(ray);
         let sensor = Sensor::default().measure(Measure::Disparity);
         let mut detector = Detector::new(stated).unwrap().sensor(sensor);
         let found = detector.detect(DepthView::new(&map, 160, 120).unwrap()).unwrap();

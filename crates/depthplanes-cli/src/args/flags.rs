@@ -68,7 +68,7 @@ pub(super) fn inputs() -> Arg {
     let input = Arg::new("input").value_name("INPUT").required(true).num_args(1..);
     input.value_parser(value_parser!(OsString)).help(
         "Files, folders (all their maps, in natural order), patterns such as 'maps/*.png', \
-         - for standard input, or scene:SPEC for a made-up scene",
+         - for standard input, or scene:SPEC for a synthetic scene",
     )
 }
 

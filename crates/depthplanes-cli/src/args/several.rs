@@ -61,7 +61,7 @@ pub(super) fn compare_command() -> clap::Command {
     clap::Command::new("compare")
         .about("Runs several methods on one map: a table, and a picture of all side by side")
         .after_help(EXIT_CODES)
-        .arg(input.help("A file, - for standard input, or scene:SPEC for a made-up scene, which knows its truth"))
+        .arg(input.help("A file, - for standard input, or scene:SPEC for a synthetic scene, which knows its truth"))
         .args(flags::reading())
         .arg(methods_flag(METHODS.iter().map(|method| method.name)))
         .args(flags::method_parameters())
@@ -99,7 +99,7 @@ pub(super) fn paper_command() -> clap::Command {
     clap::Command::new("paper")
         .about("Does what the paper did: its maps, parameters and figures, its claims, and what its measures hide")
         .after_help(format!(
-            "Maps that are not in DIR have made-up stand-ins, and the report says which. Without --data a checkout of \
+            "Maps that are not in DIR are replaced by synthetic ones, and the report says which. Without --data a checkout of \
              this project looks into shared/data beside it.\n\n{EXIT_CODES}"
         ))
         .args([
@@ -112,7 +112,9 @@ pub(super) fn paper_command() -> clap::Command {
 /// Where a report goes, and how it is made.
 fn report_flags() -> [Arg; 4] {
     [
-        flags::path("report", "DIR").required(true).help("Folder of the report and of what is kept to go on from"),
+        flags::path("report", "DIR")
+            .required(true)
+            .help("Folder for the report and for the results that an interrupted run continues from"),
         flags::count("repeat", "N").default_value("3").help("Timed runs of each method on each map, after a warm-up"),
         flags::count("jobs", "N").default_value("1").help("Maps worked on at the same time; times are truest with one"),
         flags::count("threads", "N").default_value("1").help("Threads for each map"),

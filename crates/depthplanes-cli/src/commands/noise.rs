@@ -78,7 +78,7 @@ fn estimate_record(estimate: &Estimate) -> Value {
         "blocks": estimate.blocks,
         "range": estimate.range,
         "step": estimate.step,
-        "ray_px": estimate.ray,
+        "lateral_noise_px": estimate.lateral_noise_px,
         "depth": RANGES_M.map(at),
     });
     for (part, noise) in [("", estimate.noise), ("smooth_", estimate.smooth), ("wide_", estimate.wide)] {
@@ -99,7 +99,7 @@ fn space(measure: Measure) -> &'static str {
 }
 
 fn readable(found: &[(String, Estimate)], all: &Estimate) -> String {
-    let mut rows = vec![row(["input", "blocks", "range", "at 1 m", "at 2 m", "at 3 m", "at 4 m", "ray"])];
+    let mut rows = vec![row(["input", "blocks", "range", "at 1 m", "at 2 m", "at 3 m", "at 4 m", "lateral"])];
     rows.extend(found.iter().map(|(name, estimate)| cells(name, estimate)));
     if found.len() > 1 {
         rows.push(cells("all together", all));
@@ -137,7 +137,7 @@ fn cells(name: &str, estimate: &Estimate) -> Vec<String> {
         (Some(white), Some(smooth)) => format!("{:.1} and {:.1} mm", 1e3 * white, 1e3 * smooth),
         _ => "-".to_string(),
     }));
-    cells.push(estimate.ray.map_or("-".to_string(), |ray| format!("{ray:.2} px")));
+    cells.push(estimate.lateral_noise_px.map_or("-".to_string(), |ray| format!("{ray:.2} px")));
     cells
 }
 
@@ -174,6 +174,6 @@ fn flags(estimate: &Estimate) -> Option<String> {
             _ => (),
         }
     }
-    flags.extend(estimate.ray.map(|ray| flag("ray", ray)));
+    flags.extend(estimate.lateral_noise_px.map(|pixels| flag("lateral-noise", pixels)));
     (!flags.is_empty()).then(|| flags.join(" "))
 }

@@ -8,7 +8,7 @@ use depthplanes::detection::Curved;
 
 pub(super) const OUTPUT: Output = Output {
     name: "curved-labels",
-    about: "label image of surfaces that bend, 16 bits: 0 = none, otherwise the region's label; goes with --curved",
+    about: "label image of curved surfaces, 16 bits: 0 = none, otherwise the region's label; goes with --curved",
     file: "curved.png",
     needs_camera: false,
     needs_curved: true,

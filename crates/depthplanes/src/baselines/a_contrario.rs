@@ -19,7 +19,7 @@ pub(super) const EPS: Param = Param {
     max: f64::MAX,
     kind: ParamKind::Real,
     unit: "planes",
-    meaning: "How many planes may be found by chance: a region is a plane if its number of false alarms is not above this.",
+    meaning: "Planes expected by chance: a region is a plane if its number of false alarms is at most this.",
     source: Some("Bughin and Almansa 2010"),
 };
 
@@ -30,7 +30,7 @@ pub(super) const DELTA: Param = Param {
     max: 1e6,
     kind: ParamKind::Real,
     unit: "standard deviations",
-    meaning: "How far from a plane its pixels may lie, by the noise of the preset or else as estimated from the map.",
+    meaning: "Largest distance of a pixel from its plane, in standard deviations of the noise, which is the preset's, or else estimated from the map.",
     source: Some("Bughin and Almansa 2010"),
 };
 

@@ -25,8 +25,7 @@ pub(super) struct Fpdidm {
 
 impl Baseline for Fpdidm {
     const NAME: &'static str = "fpdidm";
-    const ABOUT: &'static str =
-        "Grows from the flattest pixels, keeps what chance does not explain; our reconstruction of Bughin et al. 2010.";
+    const ABOUT: &'static str = "Grows regions from the flattest pixels and keeps those that chance does not explain; our reconstruction of Bughin et al. 2010.";
     const STAGES: &'static [&'static str] = &["planes", "grow", STAGES[0], STAGES[1], STAGES[2], STAGES[3]];
     const PARAMS: &'static [Param] = &[
         MIN,
@@ -39,7 +38,7 @@ impl Baseline for Fpdidm {
             max: 100.0,
             kind: ParamKind::Whole,
             unit: "pixels",
-            meaning: "Regions start on the plane of the window of 2 radius + 1 columns and rows around a pixel.",
+            meaning: "Radius of the window whose plane a region starts from: 2 radius + 1 columns and rows.",
             source: None,
         },
     ];

@@ -36,7 +36,7 @@ impl Baseline for Gradient {
             max: f64::MAX,
             kind: ParamKind::Real,
             unit: "standard deviations",
-            meaning: "How much the gradients of neighbours may differ, by what the noise makes of a window's gradient.",
+            meaning: "Largest difference between neighbours' gradients, in standard deviations of a window's gradient.",
             source: Some("eq. 5"),
         },
         Param {
@@ -57,7 +57,7 @@ impl Baseline for Gradient {
             max: f64::MAX,
             kind: ParamKind::Real,
             unit: "standard deviations",
-            meaning: "How far neighbours may lie from each other's planes, by the noise of a pixel; 0 for off, as in the description.",
+            meaning: "Largest distance of neighbours from each other's planes, in standard deviations of a pixel's noise; 0 for off, as in the description.",
             source: None,
         },
     ];

@@ -75,7 +75,7 @@ impl Baseline for Hough {
             max: 10_000.0,
             kind: ParamKind::Whole,
             unit: "triples",
-            meaning: "A cell with as many is a plane.",
+            meaning: "Votes that make a cell a plane.",
             source: Some("Borrmann et al. 2011"),
         },
         Param {
@@ -85,7 +85,7 @@ impl Baseline for Hough {
             max: 10_000.0,
             kind: ParamKind::Whole,
             unit: "planes",
-            meaning: "It stops after so many cells in a row whose planes have too few pixels.",
+            meaning: "Stops after this many cells in a row whose planes have too few pixels.",
             source: Some("Borrmann et al. 2011"),
         },
         SEED,

@@ -56,7 +56,7 @@ impl Baseline for Normals {
             max: 100.0,
             kind: ParamKind::Whole,
             unit: "pixels",
-            meaning: "How far off the four neighbours are that a normal is taken from; 1 in the paper.",
+            meaning: "Distance to the four neighbours that a normal is computed from; 1 in the paper.",
             source: None,
         },
     ];

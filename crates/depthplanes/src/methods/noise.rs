@@ -11,7 +11,7 @@ pub(crate) const NOISE: Param = Param {
     max: f64::MAX,
     kind: ParamKind::Real,
     unit: "m or map units",
-    meaning: "Standard deviation of depth at range 0 in metres, of disparity in map units; with `noise-growth` 0 as well it is the preset's, or else estimated from the map.",
+    meaning: "Noise of a single pixel: standard deviation of depth at range 0, metres, or of disparity, map units. If `noise-growth` is 0 too, it is the preset's, or else estimated from the map.",
     source: None,
 };
 
@@ -22,7 +22,7 @@ pub(crate) const NOISE_GROWTH: Param = Param {
     max: f64::MAX,
     kind: ParamKind::Real,
     unit: "1/m",
-    meaning: "What the standard deviation of depth grows by with the square of the range, 0.0014 for a Kinect v1; not used for disparity.",
+    meaning: "Growth of `noise` with the square of the range, 0.0014 for a Kinect v1; not used for disparity.",
     source: None,
 };
 
@@ -33,7 +33,7 @@ pub(crate) const SMOOTH_NOISE: Param = Param {
     max: f64::MAX,
     kind: ParamKind::Real,
     unit: "m or map units",
-    meaning: "The part of the error that neighbouring pixels share over tens of pixels: of depth at range 0 in metres, of disparity in map units, one standard deviation; with `smooth-noise-growth` 0 as well it is the preset's, or else estimated from the map.",
+    meaning: "Smooth noise, which pixels share over tens of pixels: standard deviation of depth at range 0, metres, or of disparity, map units. If `smooth-noise-growth` is 0 too, it is the preset's, or else estimated from the map.",
     source: None,
 };
 
@@ -44,7 +44,7 @@ pub(crate) const SMOOTH_NOISE_GROWTH: Param = Param {
     max: f64::MAX,
     kind: ParamKind::Real,
     unit: "1/m",
-    meaning: "What that part of depth grows by with the square of the range; not used for disparity.",
+    meaning: "Growth of `smooth-noise` with the square of the range; not used for disparity.",
     source: None,
 };
 
@@ -55,7 +55,7 @@ pub(crate) const NOISE_SCALE: Param = Param {
     max: 100.0,
     kind: ParamKind::Real,
     unit: "times",
-    meaning: "What all noise is multiplied by, stated or estimated; larger joins more.",
+    meaning: "Factor on all noise, stated or estimated; a larger one joins more pixels and regions.",
     source: None,
 };
 

@@ -49,7 +49,7 @@ pub struct Estimate {
     pub range: [f64; 2],
     /// Lateral error of a pixel's direction, pixels, one standard deviation; `None` where slanted surfaces scatter no
     /// more than those that face the camera.
-    pub ray: Option<f64>,
+    pub lateral_noise_px: Option<f64>,
 }
 
 impl Estimate {
@@ -150,7 +150,7 @@ impl Estimator {
         let noise = white(&errors, range, space, step);
         let [smooth, wide] = [errors.smooth, errors.whole].map(|factor| errors.times(factor, space));
         let beside_rounding = beside_rounding(&errors, range, space, &rounding);
-        Ok(Estimate { noise, beside_rounding, smooth, wide, step, blocks, measure, range, ray })
+        Ok(Estimate { noise, beside_rounding, smooth, wide, step, blocks, measure, range, lateral_noise_px: ray })
     }
 
     /// The range of q without a fortieth of the blocks at either end.

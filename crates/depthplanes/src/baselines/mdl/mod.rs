@@ -31,7 +31,7 @@ pub(super) struct Mdl {
 
 impl Baseline for Mdl {
     const NAME: &'static str = "mdl";
-    const ABOUT: &'static str = "Finds the planes that describe blocks of the map most shortly, and merges them (Yang and Förstner 2010), from its description.";
+    const ABOUT: &'static str = "Finds the planes that describe the map's blocks in the fewest bits, and merges them (Yang and Förstner 2010), from its description.";
     const STAGES: &'static [&'static str] = &["noise", "blocks", "merge", STAGES[0], STAGES[1], STAGES[2], STAGES[3]];
     const PARAMS: &'static [Param] = &[
         MIN,
@@ -44,7 +44,7 @@ impl Baseline for Mdl {
             max: 1024.0,
             kind: ParamKind::Whole,
             unit: "pixels",
-            meaning: "Side of the blocks, each of which has three planes at most.",
+            meaning: "Side of the blocks; a block has at most three planes.",
             source: Some("Yang and Förstner 2010"),
         },
         SEED,

@@ -59,7 +59,7 @@ impl Baseline for Ransac {
             max: 0.5,
             kind: ParamKind::Real,
             unit: "probability",
-            meaning: "How probable it may be that a plane is overlooked; less takes longer.",
+            meaning: "Accepted probability of overlooking a plane; a smaller one takes longer.",
             source: Some("Schnabel et al. 2007"),
         },
         Param {
@@ -69,7 +69,7 @@ impl Baseline for Ransac {
             max: 100.0,
             kind: ParamKind::Whole,
             unit: "pixels",
-            meaning: "How far the window that a point's normal is fitted to reaches to each side.",
+            meaning: "Radius of the window that a point's normal is fitted to.",
             source: None,
         },
         SEED,

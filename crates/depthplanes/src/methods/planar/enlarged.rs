@@ -158,7 +158,8 @@ fn with_source<R>(
     let params = runner.params;
     // A plane of more than `min` pixels has more than this of the source, whatever the blocks.
     let min = params.min / (x.ceil() * y.ceil()) as u32;
-    runner.params = Planar { min: min.max(params.min.min(TILE)), ray: params.ray / (x * y).sqrt(), ..params };
+    runner.params =
+        Planar { min: min.max(params.min.min(TILE)), lateral_noise: params.lateral_noise / (x * y).sqrt(), ..params };
     // Pixel centres are at integers.
     let camera = |Intrinsics { fx, fy, cx, cy }| Intrinsics {
         fx: fx / x,

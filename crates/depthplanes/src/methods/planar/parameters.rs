@@ -26,13 +26,13 @@ pub(super) const PARAMS: &[Param] = &[
     SMOOTH_NOISE_GROWTH,
     NOISE_SCALE,
     Param {
-        name: "ray",
+        name: "lateral-noise",
         default: 0.0,
         min: 0.0,
         max: 100.0,
         kind: ParamKind::Real,
         unit: "pixels",
-        meaning: "How well the ray of a pixel is known, one standard deviation; a slant makes noise of it. With 0 it is estimated from the map, 0.05 and more.",
+        meaning: "Lateral error of a pixel's direction, one standard deviation; on slanted surfaces it acts as noise. 0: estimated from the map, at least 0.05.",
         source: None,
     },
     Param {
@@ -75,13 +75,13 @@ pub struct Planar {
     pub smooth_noise: f64,
     /// What that of depth grows by with the square of the range, 1/m; not used for disparity.
     pub smooth_noise_growth: f64,
-    /// What both parts are multiplied by, stated or estimated, 0.01..=100; a `ray` that is estimated, too. Larger joins
+    /// What both parts are multiplied by, stated or estimated, 0.01..=100; a `lateral_noise` that is estimated, too. Larger joins
     /// more.
     pub noise_scale: f64,
     /// How well the ray of a pixel is known, pixels, one standard deviation, 0..=100: what a surface's slope makes of it
     /// comes on top of the noise. If it is 0, it is estimated from each map, as 0.05 and more, whether or not the noise
     /// is stated.
-    pub ray: f64,
+    pub lateral_noise: f64,
     /// How far from a plane its pixels may lie, standard deviations, 0.5..=100.
     pub inlier_threshold: f64,
 }
@@ -97,7 +97,7 @@ impl Planar {
             smooth_noise: values[4],
             smooth_noise_growth: values[5],
             noise_scale: values[6],
-            ray: values[7],
+            lateral_noise: values[7],
             inlier_threshold: values[8],
         }
     }
@@ -105,8 +105,8 @@ impl Planar {
     pub(super) fn values(&self) -> [f64; 9] {
         let noise = [self.noise, self.noise_growth, self.smooth_noise, self.smooth_noise_growth];
         let [white, white_growth, smooth, smooth_growth] = noise;
-        let Planar { min, min_area, noise_scale, ray, inlier_threshold, .. } = *self;
-        [min.into(), min_area, white, white_growth, smooth, smooth_growth, noise_scale, ray, inlier_threshold]
+        let Planar { min, min_area, noise_scale, lateral_noise, inlier_threshold, .. } = *self;
+        [min.into(), min_area, white, white_growth, smooth, smooth_growth, noise_scale, lateral_noise, inlier_threshold]
     }
 
     /// The noise to expect: each part as the parameters state it, or else as the sensor's, or else as a map shows it whose
@@ -125,7 +125,7 @@ impl Planar {
         let stated_smooth = self.stated_smooth(sensor);
         let white = if stated_smooth.is_none() { white.of_smooth_shown() } else { white };
         let smooth = stated_smooth.unwrap_or_else(|| estimated(shown.smooth)).times(scale);
-        match self.ray {
+        match self.lateral_noise {
             0.0 => {
                 let [ray, smooth_ray] = [shown.white, shown.smooth].map(|factor| scale * factor * shown.ray);
                 white.with_ray(ray.max(RAY[0])).with_smooth(smooth, smooth_ray)
@@ -160,5 +160,5 @@ impl Default for Planar {
 
 setters!(
     Planar: min: u32, min_area: f64, noise: f64, noise_growth: f64, smooth_noise: f64, smooth_noise_growth: f64,
-    noise_scale: f64, ray: f64, inlier_threshold: f64,
+    noise_scale: f64, lateral_noise: f64, inlier_threshold: f64,
 );

@@ -165,12 +165,12 @@ impl Trace {
         };
         self.findings.push(finding);
         self.describe_smooth(run, noise);
-        let source = match (run.params.ray > 0.0, noise.ray() > RAY[0]) {
+        let source = match (run.params.lateral_noise > 0.0, noise.ray() > RAY[0]) {
             (true, _) => "from the parameters",
             (false, true) => "estimated from the map",
             (false, false) => "the least that is expected",
         };
-        let finding = Finding::new("tiles", "how well its ray is known", source);
+        let finding = Finding::new("tiles", "lateral noise", source);
         self.findings.push(finding.with("within", noise.ray(), "pixels"));
     }
 
