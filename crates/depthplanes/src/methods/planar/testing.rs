@@ -126,6 +126,13 @@ impl Stages {
         merger.drop(&mut pyramid.grids[0], regions, 1, |_| false);
     }
 
+    /// Lists the edges between the regions that there are, and merges nothing.
+    pub(super) fn list_edges(&mut self) {
+        let Runner { pyramid, merger, .. } = &mut self.run;
+        merger.edges.clear();
+        merger.list_pairs(&pyramid.grids[0], 1);
+    }
+
     /// Judges the regions that there are.
     pub(super) fn judge(&mut self) {
         let Runner { affine, pyramid, regions, merger, curvature, redundancy, .. } = &mut self.run;
