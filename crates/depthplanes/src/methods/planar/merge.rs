@@ -426,9 +426,9 @@ mod tests {
 
     #[test]
     fn pieces_of_one_plane_merge_and_planes_that_differ_by_more_than_the_noise_do_not() {
-        let plane = |u: f64, v: f64| 40.0 + 0.05 * u - 0.02 * v;
         // A step of ten deviations, a crease of a pixel's value for each two, and a step that noise hides.
-        let kinds: [(&str, fn(f64) -> f64, usize); 4] = [
+        type Off = fn(f64) -> f64;
+        let kinds: [(&str, Off, usize); 4] = [
             ("one plane", |_| 0.0, 1),
             ("a step", |u| if u < 64.0 { 0.0 } else { 10.0 * SIGMA }, 2),
             ("a crease", |u| -0.5 * (u - 63.5).abs(), 2),
@@ -436,7 +436,7 @@ mod tests {
         ];
         for (name, off, expected) in kinds {
             for seed in 0..5 {
-                let made = Made::noisy([128, 96], seed, |u, v| plane(u, v) + off(u));
+                let made = Made::noisy([128, 96], seed, |u, v| 40.0 + 0.05 * u - 0.02 * v + off(u));
                 let mut stages = Stages::tiles(&made, noise(0.0));
                 // Twelve pieces.
                 stages.divide(|column, row| (column / 8 + row / 8 * 4) as u32);

@@ -163,7 +163,7 @@ fn find_beside(region: &[u32], columns: usize, at: usize) -> [u8; LANES] {
 mod tests {
     use super::*;
     use crate::methods::planar::layout::SIDE;
-    use crate::methods::planar::testing::{Made, SIGMA, Stages, noise};
+    use crate::methods::planar::testing::{Made, SIGMA, Stages, bands, noise};
 
     fn refine(stages: &mut Stages, threads: usize) {
         let Stages { run, .. } = stages;
@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn tiles_that_were_given_to_the_wrong_side_of_a_crease_go_back() {
-        for (bands, threads) in [(vec![0..6], 1), (vec![0..2, 2..3, 3..6], 2)] {
+        for (bands, threads) in [(bands(&[0, 6]), 1), (bands(&[0, 2, 3, 6]), 2)] {
             let mut stages = Stages::tiles(&crease(), noise(0.0));
             // Growth ran on over the crease here and there, on each side, and on a band's last row and first.
             let is_off = |column: usize, row: usize| match row {

@@ -5,7 +5,7 @@
 
 use super::curved::Sensing;
 use super::grid::{Cell, Grid, NONE};
-use super::layout::{AffineMap, SIDE};
+use super::layout::SIDE;
 use super::pipeline::Runner;
 use super::region::{Planes, Region, find_boxes};
 use crate::camera::Measure;
@@ -202,6 +202,11 @@ impl Stages {
     }
 }
 
+/// Bands that end where the next begins.
+pub(super) fn bands(ends: &[usize]) -> Vec<Range<usize>> {
+    ends.windows(2).map(|ends| ends[0]..ends[1]).collect()
+}
+
 /// What pixels are held against.
 pub(super) fn planes<'a>(regions: &'a [Region], noise: &'a NoiseModel) -> Planes<'a> {
     Planes { regions, noise, inlier_threshold: THRESHOLD, curved: false }
@@ -284,9 +289,4 @@ pub(super) fn patchy(seed: u64) -> Made {
         let value = q + a * (u as f64 - 75.0) + b * (v as f64 - 45.0) + SIGMA * random.gaussian();
         if random.uniform() < holes { f64::NAN } else { value }
     })
-}
-
-/// The map in q, without the rows and columns beyond it.
-pub(super) fn q_of(affine: &AffineMap, [u, v]: [usize; 2]) -> f32 {
-    affine.q[v * affine.stride + u]
 }
