@@ -1,8 +1,6 @@
 //! For the stages' own tests: maps of known planes, a run that goes no further than a stage, and what a look at each
 //! pixel finds.
 
-#![allow(dead_code)] // each stage's tests come with what they need
-
 use super::curved::Sensing;
 use super::grid::{Cell, Grid, NONE};
 use super::layout::SIDE;
