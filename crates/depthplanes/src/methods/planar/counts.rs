@@ -192,7 +192,7 @@ mod tests {
     fn a_single_float_that_is_no_count_and_one_beyond_the_largest_are_enough_for_there_to_be_none() {
         let millimetres: Vec<f32> = counts(3, 9000).iter().map(|&count| f32::from(count) / 1000.0).collect();
         assert!(counts_of(&millimetres, METRES).is_some());
-        for stray in [1.23456, 1.000_07, 66.0, 1e-5, -1.0] {
+        for stray in [1.23456, 1.000_07, 1.000_01, 1.000_002, 66.0, 1e-5, -1.0] {
             let mut map = millimetres.clone();
             map[777] = stray;
             assert_eq!(counts_of(&map, METRES), None, "{stray}");

@@ -383,6 +383,10 @@ mod tests {
             above += u32::from(gain > 7.8);
             assert!(gain < BOW_VARIANCES, "{gain} variances, seed {seed}");
             assert!(!run.curvature.bows.is_bowed(0, &run.regions.all[0], rays, 0.0));
+            // Nor where no smooth part is expected: what chance explains is no bow.
+            let mut without = run.regions.all[0];
+            without.smooth = 0.0;
+            assert!(!run.curvature.bows.is_bowed(0, &without, rays, 0.0));
             assert_eq!(run.shown.times(&run.regions.all, &run.curvature.bows, rays, 100), 1.0);
         }
         assert!((0..=6).contains(&above), "{above} of 40");

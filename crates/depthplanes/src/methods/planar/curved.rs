@@ -448,11 +448,44 @@ mod tests {
                 boxes: &run.curvature.boxes,
                 bows: &run.curvature.bows,
             };
-            context.joint(0, 1).is_smooth().is_some()
+            let both = context.joint(0, 1);
+            let by_planes = both.sums.iter().map(|sums| sums.by_planes - sums.cells).sum();
+            let [is_close, is_better] = [both.is_close(JOINT_MISS), both.is_better(by_planes, JOINT_GAIN)];
+            assert_eq!(both.is_smooth().is_some(), is_close && is_better);
+            [is_close, is_better]
         };
         for seed in 0..5 {
-            assert!(halves(seed, |u| -0.002 * u * u), "a bowl, seed {seed}");
-            assert!(!halves(seed, |u| -0.2 * u.abs()), "a roof, seed {seed}");
+            assert_eq!(halves(seed, |u| -0.002 * u * u), [true, true], "a bowl, seed {seed}");
+            assert_eq!(halves(seed, |u| -0.2 * u.abs()), [false, false], "a roof, seed {seed}");
+            assert_eq!(halves(seed, |_| 0.0), [true, false], "a wall, seed {seed}");
+        }
+    }
+
+    #[test]
+    fn a_small_region_and_what_is_around_it_bend_on_a_bowl_and_not_on_a_roof() {
+        let bends = |seed: u64, q: fn(f64) -> f64| {
+            let made = Made::noisy(SIZE, seed, |u, v| 40.0 + 0.01 * v + SIGMA * q(u - 95.5));
+            let mut stages = Stages::tiles(&made, noise(0.0));
+            // Eight tiles by four, around the ridge.
+            stages.divide(|column, row| if (20..28).contains(&column) && (10..14).contains(&row) { 0 } else { NONE });
+            stages.run.merger.edges.clear();
+            stages.judge();
+            let run = &stages.run;
+            let context = Context {
+                pyramid: &run.pyramid,
+                all: &run.regions.all,
+                noise: &stages.noise,
+                is_redundant: &run.redundancy.is_redundant,
+                boxes: &run.curvature.boxes,
+                bows: &run.curvature.bows,
+            };
+            context.surroundings(0).bends()
+        };
+        for seed in 0..5 {
+            assert!(bends(seed, |u| -0.05 * u * u), "a bowl, seed {seed}");
+            assert!(!bends(seed, |u| -0.4 * u.abs()), "a low roof, seed {seed}");
+            assert!(!bends(seed, |u| -3.0 * u.abs()), "a steep roof, seed {seed}");
+            assert!(!bends(seed, |_| 0.0), "a wall, seed {seed}");
         }
     }
 

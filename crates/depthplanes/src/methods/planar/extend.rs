@@ -363,6 +363,31 @@ mod tests {
     }
 
     #[test]
+    fn regions_that_turn_little_by_little_are_not_joined_hand_in_hand() {
+        // Three strips, each turned against the one before by the most that is one plane; all three are not.
+        let strips = |turn: f64| {
+            let slope = |u: f64| turn * ((u - 32.0).max(0.0) + (u - 64.0).max(0.0));
+            let made = Made::exact([96, 64], |u, v| plane(u, v) + SIGMA * slope(u as f64));
+            let mut stages = Stages::tiles(&made, noise(0.0));
+            stages.divide(|column, _| column as u32 / 8);
+            stages
+        };
+        let cost = |turn: f64| merge_cost(&strips(turn).all()[0], &strips(turn).all()[1]);
+        let most = (1..200).map(|step| 0.01 * f64::from(step)).take_while(|&turn| cost(turn) < 0.95).last().unwrap();
+        let mut stages = strips(most);
+        let costs = [[0, 1], [1, 2], [0, 2]].map(|[a, b]| merge_cost(&stages.all()[a], &stages.all()[b]));
+        assert!(costs[0] <= 1.0 && costs[1] <= 1.0 && costs[2] > 1.0, "{costs:?}");
+        let stride = stages.run.affine.stride;
+        let mut image: Vec<u16> =
+            (0..stages.run.affine.q.len()).map(|at| (1 + at % stride / 32).min(3) as u16).collect();
+        let (mut boundary, mut contacts) = (Boundary::default(), Contacts::default());
+        boundary.find(&image, stride, 1);
+        contacts.list(&boundary, &image, 1);
+        contacts.join([].into_iter(), &mut stages.run.regions.all, &mut image, 1);
+        assert_eq!([0, 1, 2].map(|id| contacts.label(id)), [1, 1, 3]);
+    }
+
+    #[test]
     fn a_pixel_between_two_planes_goes_to_the_nearer_and_they_are_listed_as_touching() {
         // The strip in the middle lies on both planes, which are five deviations apart, nearer to the one or the other.
         for (off, expected) in [(1.5, 1), (3.5, 2)] {

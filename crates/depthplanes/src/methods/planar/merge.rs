@@ -450,6 +450,23 @@ mod tests {
     }
 
     #[test]
+    fn what_bows_by_a_small_angle_is_one_and_what_turns_at_a_crease_of_12_degrees_is_two() {
+        // A column is 1/128 of the depth; both creases cost more than the noise, and less than a bow may.
+        for (degrees, expected) in [(6.0, 1), (12.0, 2)] {
+            for seed in 0..5 {
+                let slope = 40.0 / 128.0 * (0.5 * f64::to_radians(degrees)).tan();
+                let made = Made::noisy([24, 128], seed, |u, _| 40.0 - slope * (u - 11.5).abs());
+                let mut stages = Stages::tiles(&made, noise(0.0));
+                stages.divide(|column, _| u32::from(column >= 3));
+                let cost = merge_cost(&stages.all()[0], &stages.all()[1]);
+                assert!(cost > 1.0 && cost < BOWED_MERGE, "{cost} at {degrees} degrees");
+                stages.merge();
+                assert_eq!(stages.all().len(), expected, "{degrees} degrees, seed {seed}");
+            }
+        }
+    }
+
+    #[test]
     fn pieces_of_one_plane_that_are_far_apart_stay_two() {
         let made = Made::noisy([128, 64], 3, |u, v| 40.0 + 0.05 * u - 0.02 * v);
         let mut stages = Stages::tiles(&made, noise(0.0));

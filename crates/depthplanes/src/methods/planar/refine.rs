@@ -238,6 +238,22 @@ mod tests {
     }
 
     #[test]
+    fn a_tile_far_from_both_planes_stays_and_one_near_the_other_goes() {
+        for (level, expected) in [(9.0, 0), (13.0, 1)] {
+            // Two tiles of the left lie between the planes, nearer to the right's, which is 15 deviations higher.
+            let is_between = |u: f64, v: f64| (60.0..64.0).contains(&u) && (28.0..36.0).contains(&v);
+            let made = Made::noisy([128, 64], 4, |u, v| {
+                40.0 + SIGMA * if is_between(u, v) { level } else { 15.0 * f64::from(u >= 64.0) }
+            });
+            let mut stages = Stages::tiles(&made, noise(0.0));
+            stages.divide(|column, _| u32::from(column >= 16));
+            refine(&mut stages, 1);
+            assert_eq!([28, 32].map(|v| stages.region_at([60, v])), [expected; 2], "{level} deviations");
+            assert_eq!([24, 36].map(|v| stages.region_at([60, v])), [0; 2]);
+        }
+    }
+
+    #[test]
     fn tiles_of_no_region_stay_without_one() {
         let mut stages = Stages::tiles(&crease(), noise(0.0));
         stages.divide(|column, row| if (6..9).contains(&row) && column > 13 { NONE } else { u32::from(column >= 16) });

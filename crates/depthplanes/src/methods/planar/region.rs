@@ -325,7 +325,7 @@ mod tests {
     fn a_region_that_takes_another_in_has_the_plane_of_the_pixels_of_both() {
         let made = patchy(9);
         let mut stages = Stages::tiles(&made, noise(0.01));
-        stages.divide(|column, row| u32::from(column + row > 30));
+        stages.divide(|column, row| u32::from(row > 9 || column + row > 60));
         let [mut one, other] = [stages.all()[0], stages.all()[1]];
         one.absorb(&other);
         let grid = stages.grid();
@@ -346,19 +346,22 @@ mod tests {
 
     #[test]
     fn a_region_takes_a_cell_of_its_own_plane_in_and_refuses_one_that_is_off() {
-        // The right half is four deviations off.
-        let step = |u: f64, v: f64| slope(u, v) + if u >= 64.0 { 4.0 * SIGMA } else { 0.0 };
+        // The right half is twelve deviations off.
+        let step = |u: f64, v: f64| slope(u, v) + if u >= 64.0 { 12.0 * SIGMA } else { 0.0 };
         let made = Made::noisy([128, 64], 5, step);
         let stages = Stages::tiles(&made, noise(0.0));
         let grid = stages.grid();
-        // From one tile on, and from many, whose plane is known.
-        for first in [1, 40] {
-            let mut region = Region::of(&grid.cell(Place::new(0, 4)));
-            (1..first).for_each(|at| region.take(&grid.cell(Place::new(at % 8, 4 + at / 8))));
+        // Of few tiles beside the step, which are fitted anew with each cell, and of many, whose plane is known.
+        for first in [4, 40] {
+            let mut region = Region::of(&grid.cell(Place::new(15, 4)));
+            (1..first).for_each(|at| region.take(&grid.cell(Place::new(15 - at % 8, 4 + at / 8))));
             region.refit();
-            for column in 8..16 {
+            let before = region.sums;
+            assert!(!region.takes(&grid.cell(Place::new(16, 4)), true, THRESHOLD), "beyond the step, {first} tiles");
+            assert_eq!(region.sums, before);
+            for column in 0..8 {
                 let before = region.sums.n;
-                assert!(region.takes(&grid.cell(Place::new(column, 8)), true, THRESHOLD), "{column} of its own plane");
+                assert!(region.takes(&grid.cell(Place::new(column, 12)), true, THRESHOLD), "{column} of its own plane");
                 assert_eq!(region.sums.n, before + 16.0);
             }
             let before = region.sums;
