@@ -116,3 +116,60 @@ impl MaskRows<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::util::random::Random;
+
+    /// Labels of small patches, of lone pixels and of none.
+    fn image(random: &mut Random, stride: usize, rows: usize) -> Vec<u16> {
+        let labels = [0, 0, 1, 2, 3, u16::MAX];
+        let patches: Vec<u16> = (0..stride * rows).map(|_| labels[random.whole(0, 5)]).collect();
+        let size = random.whole(1, 9);
+        let mut label = |at: usize| match random.uniform() < 0.1 {
+            true => labels[random.whole(0, 5)],
+            false => patches[at / stride / size * stride + at % stride / size],
+        };
+        (0..stride * rows).map(&mut label).collect()
+    }
+
+    #[test]
+    fn open_pixels_and_neighbours_of_two_labels_are_what_a_look_at_each_pixel_finds() {
+        let (mut random, mut boundary) = (Random::new(4), Boundary::default());
+        for (round, (stride, rows)) in
+            [(64, 1), (128, 40), (192, 17), (128, 40), (64, 64)].into_iter().cycle().take(40).enumerate()
+        {
+            let image = image(&mut random, stride, rows);
+            boundary.find(&image, stride, 1 + round % 3);
+            assert_eq!(boundary.rows(), rows);
+            let at = |u: usize, v: usize| if u < stride && v < rows { image[v * stride + u] } else { 0 };
+            let (mut open, mut pairs) = (Vec::new(), Vec::new());
+            // Some of the rows alone, too.
+            let of = if round % 2 == 0 { 0..rows } else { rows / 3..rows - rows / 3 };
+            for (v, u) in of.clone().flat_map(|v| (0..stride).map(move |u| (v, u))) {
+                let own = at(u, v);
+                let [left, up] = [at(u.wrapping_sub(1), v), at(u, v.wrapping_sub(1))];
+                if own == 0 && [left, up, at(u + 1, v), at(u, v + 1)].iter().any(|&label| label > 0) {
+                    open.push([u, v]);
+                }
+                pairs.extend(
+                    [left, up]
+                        .into_iter()
+                        .filter(|&other| own > 0 && other > 0 && other != own)
+                        .map(|other| (v, own, other)),
+                );
+            }
+            let mut found = Vec::new();
+            boundary.each_open(of.clone(), |place| found.push(place));
+            assert_eq!(found, open, "{stride} columns, {rows} rows");
+            let mut found = Vec::new();
+            for v in of {
+                boundary.each(v..v + 1, &image, |own, other| found.push((v, own, other)));
+            }
+            found.sort_unstable();
+            pairs.sort_unstable();
+            assert_eq!(found, pairs, "{stride} columns, {rows} rows");
+        }
+    }
+}

@@ -108,3 +108,105 @@ impl RowPairs {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::components::Connectivity;
+    use crate::map::DepthView;
+    use crate::util::random::Random;
+
+    /// The group of each pixel by a plain flood, numbered by first pixels: over the four neighbours of the same label, and
+    /// over two steps if some pixel between is missing.
+    fn flood(
+        image: &[u16],
+        q: &[f32],
+        stride: usize,
+        [width, height]: [usize; 2],
+        over_gaps: bool,
+    ) -> Vec<Option<u32>> {
+        let steps: Vec<([isize; 2], Vec<[isize; 2]>)> = vec![
+            ([1, 0], vec![]),
+            ([0, 1], vec![]),
+            ([2, 0], vec![[1, 0]]),
+            ([0, 2], vec![[0, 1]]),
+            ([1, 1], vec![[1, 0], [0, 1]]),
+            ([-1, 1], vec![[-1, 0], [0, 1]]),
+        ];
+        let mut group = vec![None; width * height];
+        let mut groups = 0;
+        for first in 0..width * height {
+            if group[first].is_some() || image[first / width * stride + first % width] == 0 {
+                continue;
+            }
+            group[first] = Some(groups);
+            let mut queue = vec![first];
+            while let Some(at) = queue.pop() {
+                for (step, between) in &steps {
+                    for way in [1, -1] {
+                        let place = |[u, v]: [isize; 2]| {
+                            let [u, v] = [(at % width) as isize + way * u, (at / width) as isize + way * v];
+                            let is_here = (0..width as isize).contains(&u) && (0..height as isize).contains(&v);
+                            is_here.then_some([u as usize, v as usize])
+                        };
+                        let Some([u, v]) = place(*step) else { continue };
+                        let is_missing =
+                            |step: &[isize; 2]| place(*step).is_some_and(|[u, v]| q[v * stride + u].is_nan());
+                        let joins = between.is_empty() || over_gaps && between.iter().any(is_missing);
+                        let same = image[v * stride + u] == image[at / width * stride + at % width];
+                        if joins && same && group[v * width + u].is_none() {
+                            group[v * width + u] = Some(groups);
+                            queue.push(v * width + u);
+                        }
+                    }
+                }
+            }
+            groups += 1;
+        }
+        group
+    }
+
+    #[test]
+    fn pieces_are_joined_over_missing_pixels_as_a_plain_flood_of_two_steps_joins_them() {
+        let (mut random, mut bridge, mut grouper) = (Random::new(6), Bridge::default(), ConnectedComponents::default());
+        for round in 0..60 {
+            // More rows than a part has; more columns than a word has.
+            let [width, height]: [usize; 2] = [[1, 1], [130, 70], [64, 5], [63, 130], [2, 9]][round % 5];
+            let stride = width.next_multiple_of(64);
+            let (missing, off) = (random.between(0.0, 0.7), random.between(0.0, 0.3));
+            let size = random.whole(2, 20);
+            let (mut image, mut q) = (vec![0; stride * height], vec![f32::NAN; stride * height]);
+            for (v, u) in (0..height).flat_map(|v| (0..width).map(move |u| (v, u))) {
+                let draw = random.uniform();
+                if draw >= missing {
+                    q[v * stride + u] = 1.0;
+                    // What was measured and lies on no plane has no label.
+                    let label = [1, 2, 1, 7][(u / size + v / size * 3) % 4];
+                    image[v * stride + u] = if random.uniform() < off { 0 } else { label };
+                }
+            }
+            let view = DepthView::with_stride(&image, width, height, stride).unwrap().valid_range(1, 65_534).unwrap();
+            let map = Measured { numbers: &q, stride, height };
+            for threads in [1, 3] {
+                grouper.group(&view, &Connectivity::new(view.validity(), 0.0).unwrap(), threads);
+                for over_gaps in [false, true] {
+                    if over_gaps {
+                        bridge.join(map, &image, &mut grouper, threads);
+                    }
+                    let expected = flood(&image, &q, stride, [width, height], over_gaps);
+                    let groups = grouper.groups();
+                    for (at, &expected) in expected.iter().enumerate() {
+                        let [u, v] = [at % width, at / width];
+                        let found = (image[v * stride + u] > 0).then(|| groups.at([u, v]));
+                        assert_eq!(found, expected, "at {u}, {v} of {width} x {height}, over gaps: {over_gaps}");
+                    }
+                    let count = expected.iter().flatten().max().map_or(0, |last| *last as usize + 1);
+                    assert_eq!(groups.count(), count);
+                    for (group, &size) in groups.sizes().iter().enumerate() {
+                        assert_eq!(expected.iter().filter(|&&own| own == Some(group as u32)).count(), size as usize);
+                    }
+                }
+            }
+        }
+    }
+}

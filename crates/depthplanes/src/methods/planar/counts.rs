@@ -144,3 +144,93 @@ impl Counted {
         quantities.filter(|quantity| quantity.name == "value").for_each(|quantity| quantity.value /= self.per_unit);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::util::random::Random;
+
+    const METRES: Sensor =
+        Sensor { measure: Measure::Depth { metres: 1.0 }, intrinsics: None, noise: None, smooth_noise: None };
+
+    /// The counts of a map of 50 columns, and how many a map unit has.
+    fn counts_of<T: Pixel>(map: &[T], sensor: Sensor) -> Option<(Vec<u16>, f64)> {
+        let mut pixels = vec![5; 7]; // of another map
+        let view = DepthView::new(map, 50, map.len() / 50).unwrap();
+        let (view, counted) = counted(&mut pixels, &view, &sensor)?;
+        let Measure::Depth { metres } = counted.sensor.measure else { panic!("counts are of depth") };
+        let Measure::Depth { metres: unit } = sensor.measure else { panic!("so are they") };
+        assert!((metres * counted.per_unit / unit - 1.0).abs() < 1e-12);
+        Some((view.rows().flatten().copied().collect(), counted.per_unit))
+    }
+
+    /// Counts in no order, of which some are missing.
+    fn counts(seed: u64, most: usize) -> Vec<u16> {
+        let mut random = Random::new(seed);
+        (0..50 * 20).map(|_| if random.uniform() < 0.2 { 0 } else { random.whole(1, most) as u16 }).collect()
+    }
+
+    #[test]
+    fn floats_that_count_whole_millimetres_fifths_and_tenths_are_found() {
+        for (seed, per_metre) in (0..).zip([1000.0, 5000.0, 10_000.0]) {
+            let counts = counts(seed, 65_535);
+            // Made in single precision, in double precision, and in millimetres that are floats.
+            let floats: [(f64, Vec<f32>); 3] = [
+                (1.0, counts.iter().map(|&count| f32::from(count) / per_metre as f32).collect()),
+                (1.0, counts.iter().map(|&count| (f64::from(count) / per_metre) as f32).collect()),
+                (0.001, counts.iter().map(|&count| (f64::from(count) * 1000.0 / per_metre) as f32).collect()),
+            ];
+            for (metres, floats) in floats {
+                let sensor = Sensor { measure: Measure::Depth { metres }, ..METRES };
+                let (found, per_unit) = counts_of(&floats, sensor).unwrap();
+                assert_eq!(found, counts);
+                assert!((per_unit / (per_metre * metres) - 1.0).abs() < 1e-12, "{per_unit} a unit");
+            }
+        }
+    }
+
+    #[test]
+    fn a_single_float_that_is_no_count_and_one_beyond_the_largest_are_enough_for_there_to_be_none() {
+        let millimetres: Vec<f32> = counts(3, 9000).iter().map(|&count| f32::from(count) / 1000.0).collect();
+        assert!(counts_of(&millimetres, METRES).is_some());
+        for stray in [1.23456, 1.000_07, 1.000_01, 1.000_002, 66.0, 1e-5, -1.0] {
+            let mut map = millimetres.clone();
+            map[777] = stray;
+            assert_eq!(counts_of(&map, METRES), None, "{stray}");
+        }
+        // What is not valid is no count and does no harm.
+        for missing in [f32::NAN, f32::INFINITY, 0.0] {
+            let mut map = millimetres.clone();
+            map[777] = missing;
+            assert_eq!(counts_of(&map, METRES).unwrap().0[777], 0);
+        }
+    }
+
+    #[test]
+    fn whole_numbers_and_what_is_no_depth_are_not_counted() {
+        let counts = counts(4, 9000);
+        let floats: Vec<f32> = counts.iter().map(|&count| f32::from(count)).collect();
+        let millimetres = Sensor { measure: Measure::Depth { metres: 0.001 }, ..METRES };
+        assert!(counts_of(&floats, millimetres).is_some());
+        assert_eq!(counts_of(&counts, millimetres), None);
+        assert_eq!(counts_of(&floats, Sensor { measure: Measure::Disparity, ..METRES }), None);
+    }
+
+    #[test]
+    fn what_is_found_in_counts_is_told_in_the_units_of_the_map() {
+        let counted = Counted { per_unit: 1000.0, sensor: METRES };
+        let mut plane =
+            crate::detection::Plane::new(1, 5, crate::detection::PixelBox { u_min: 0, v_min: 0, u_max: 1, v_max: 1 });
+        plane.fit = Some(MapFit { gradient: [2.0, -3.0], offset: 1500.0, rms: 4.0 });
+        let mut out = Detection { planes: vec![plane], ..Detection::default() };
+        counted.restore(&mut out);
+        let MapFit { gradient: [a, b], offset, rms } = out.planes[0].fit.unwrap();
+        for (found, expected) in [(a, 0.002), (b, -0.003), (offset, 1.5), (rms, 0.004)] {
+            assert!((found - expected).abs() < 1e-12, "{found}, not {expected}");
+        }
+        // The sensor of the counts is the job's while it works, and no longer.
+        let mut job = Job { sensor: Sensor::default(), threads: 1, curved: false, joiner: None, observer: &mut |_| () };
+        assert_eq!(counted.on(&mut job, |job| job.sensor), METRES);
+        assert_eq!(job.sensor, Sensor::default());
+    }
+}

@@ -319,3 +319,159 @@ impl Border<'_> {
         dot(to, straight) > 0.0 && apart * apart <= TURN_SINE * TURN_SINE * dot(normal, normal) * way
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::planar::testing::{Made, SIGMA, Stages, least_squares, noise, plane_of};
+
+    const SIZE: [usize; 2] = [192, 128];
+
+    /// A wall with a bow down its columns of so many deviations, middle to end.
+    fn bowed(seed: u64, deviations: f64) -> Made {
+        let bow = |u: f64| deviations * SIGMA * ((u - 95.5) / 95.5).powi(2);
+        Made::noisy(SIZE, seed, |u, v| 40.0 + 0.02 * u - 0.01 * v + bow(u))
+    }
+
+    /// The wall as one region, and one to its right if `column` says so.
+    fn stages(made: &Made, smooth: f64, column: usize) -> Stages {
+        let mut stages = Stages::tiles(made, noise(smooth));
+        stages.divide(|at, _| u32::from(at >= column));
+        stages.run.curvature.bows.measure(&stages.run.pyramid, &stages.run.regions.all);
+        stages
+    }
+
+    #[test]
+    fn the_gain_of_a_region_is_what_a_quadratic_of_its_cell_means_explains_beyond_a_plane() {
+        for (seed, deviations, column) in [(1, 0.0, 40), (2, 3.0, 16), (3, 3.0, 40), (4, 20.0, 5)] {
+            let made = bowed(seed, deviations).with_holes(seed, 0.02);
+            let stages = stages(&made, 0.01, column);
+            let bows = &stages.run.curvature.bows;
+            for (id, region) in (0..).zip(stages.all()) {
+                let grid = &stages.run.pyramid.grids[bows.level(id)];
+                let own: Vec<usize> = (0..grid.len()).filter(|&at| grid.region[at] == id).collect();
+                // It is the coarsest grid that has plenty of them.
+                assert!(own.len() as f64 >= SHAPE_CELLS);
+                if let Some(coarser) = stages.run.pyramid.grids.get(bows.level(id) + 1) {
+                    assert!((coarser.region.iter().filter(|&&other| other == id).count() as f64) < SHAPE_CELLS);
+                }
+                let (mut rows, mut right) = (Vec::new(), Vec::new());
+                for cell in own.iter().map(|&at| grid.cell(grid.place(at))) {
+                    let [u, v] = [0, 1].map(|axis| (cell.middle[axis] - region.middle[axis]) / 50.0);
+                    let root = (cell.n / cell.variance).sqrt();
+                    rows.push([1.0, u, v, u * u, u * v, v * v].map(|term| root * term).to_vec());
+                    right.push(root * cell.residual_about(region.abc, region.origin) / cell.n);
+                }
+                let of_plane: Vec<Vec<f64>> = rows.iter().map(|row| row[..3].to_vec()).collect();
+                let expected = least_squares(&of_plane, &right).1 - least_squares(&rows, &right).1;
+                let gain = bows.gain(id);
+                assert!((gain - expected).abs() <= 1e-6 * expected + 1e-4, "{gain}, not {expected}, of region {id}");
+                let [bow, most] = bows.rms(id, region).unwrap();
+                let pixels: f64 = own.iter().map(|&at| f64::from(grid.pixels(at))).sum();
+                assert!((bow - (expected / pixels).sqrt()).abs() < 1e-4 && (most - 1.7 * 0.01 / SIGMA).abs() < 1e-4);
+            }
+        }
+    }
+
+    #[test]
+    fn a_flat_wall_with_white_noise_has_no_bow_and_shows_no_more_of_the_smooth_part() {
+        let mut above = 0;
+        for seed in 0..40 {
+            let mut stages = stages(&bowed(seed, 0.0), 0.01, 100);
+            let Stages { run, rays, .. } = &mut stages;
+            let gain = run.curvature.bows.gain(0);
+            // Three terms of white noise: chi-squared of 3, more than 7.8 once in twenty.
+            above += u32::from(gain > 7.8);
+            assert!(gain < BOW_VARIANCES, "{gain} variances, seed {seed}");
+            assert!(!run.curvature.bows.is_bowed(0, &run.regions.all[0], rays, 0.0));
+            // Nor where no smooth part is expected: what chance explains is no bow.
+            let mut without = run.regions.all[0];
+            without.smooth = 0.0;
+            assert!(!run.curvature.bows.is_bowed(0, &without, rays, 0.0));
+            assert_eq!(run.shown.times(&run.regions.all, &run.curvature.bows, rays, 100), 1.0);
+        }
+        assert!((0..=6).contains(&above), "{above} of 40");
+    }
+
+    #[test]
+    fn a_wall_that_bows_shows_so_many_times_the_smooth_part_as_half_its_deviation_is() {
+        for (seed, deviations, smooth) in [(1, 3.0, 0.01), (2, 5.0, 0.01), (3, 8.0, 0.01), (4, 8.0, 0.002)] {
+            let made = bowed(seed, deviations);
+            let mut stages = stages(&made, smooth, 100);
+            let Stages { run, rays, .. } = &mut stages;
+            let squares = plane_of(&made.pixels(0..SIZE[0], 0..SIZE[1]), [0.0; 2]).1;
+            let beyond = squares / (SIZE[0] * SIZE[1]) as f64 - SIGMA * SIGMA;
+            let expected = (0.5 * beyond.sqrt() / smooth).clamp(1.0, SHOWN_MOST);
+            let found = run.shown.times(&run.regions.all, &run.curvature.bows, rays, 100);
+            assert!(found > 1.1 && (found / expected - 1.0).abs() < 1e-3, "{found} times, not {expected}");
+            assert!(smooth > 0.002 || found == SHOWN_MOST);
+        }
+        // What turns as a curved surface does says nothing of the noise.
+        let mut stages = stages(&bowed(5, 100.0), 0.01, 100);
+        let Stages { run, rays, .. } = &mut stages;
+        assert_eq!(run.shown.times(&run.regions.all, &run.curvature.bows, rays, 100), 1.0);
+    }
+
+    #[test]
+    fn half_of_the_pixels_of_large_regions_say_how_much_of_the_smooth_part_is_shown() {
+        // A bowed wall to the right of a flat one: the larger tells.
+        for (column, expects_more) in [(16, true), (36, false)] {
+            let edge = 4.0 * column as f64;
+            let bow = |u: f64| 8.0 * SIGMA * ((u - 128.0) / 64.0).powi(2);
+            let made = Made::noisy(SIZE, 5, |u, v| 40.0 + 0.02 * v + if u < edge { 0.0 } else { 10.0 + bow(u) });
+            let mut stages = stages(&made, 0.01, column);
+            let Stages { run, rays, .. } = &mut stages;
+            let times = run.shown.times(&run.regions.all, &run.curvature.bows, rays, 100);
+            assert_eq!(times > 1.0, expects_more, "{times} times");
+        }
+        // Small regions tell nothing.
+        let made = Made::noisy([40, 40], 5, |u, v| 40.0 + 0.02 * v + 8.0 * SIGMA * (u / 20.0 - 1.0).powi(2));
+        let mut stages = stages(&made, 0.01, 100);
+        let Stages { run, rays, .. } = &mut stages;
+        assert_eq!(run.shown.times(&run.regions.all, &run.curvature.bows, rays, 100), 1.0);
+    }
+
+    #[test]
+    fn a_bow_turns_by_the_angle_between_its_ends() {
+        // By the camera that is assumed a column is 1/192 of the depth.
+        let per_column = 0.0006;
+        let made = Made::exact(SIZE, |u, _| 40.0 - per_column * (u as f64 - 96.0).powi(2));
+        let stages = stages(&made, 1e-9, 100);
+        let (region, bows) = (&stages.all()[0], &stages.run.curvature.bows);
+        // 1.5 standard deviations of place to each side, of columns 192 / sqrt(12).
+        let reach = 1.5 * 192.0 / 12.0f64.sqrt();
+        let normal_at = |way: f64| {
+            let u = 95.5 + way * reach;
+            let q = 40.0 - per_column * (u - 96.0).powi(2);
+            let a = -2.0 * per_column * (u - 96.0);
+            [a * 192.0, 0.0, q + a * (96.0 - u)]
+        };
+        let [m, n] = [normal_at(-1.0), normal_at(1.0)];
+        let angle = (dot(m, n) / (dot(m, m) * dot(n, n)).sqrt()).acos().to_degrees();
+        assert!(angle > 8.0, "{angle} degrees");
+        assert!(bows.is_bowed(0, region, &stages.rays, 0.98 * angle), "{angle}");
+        assert!(!bows.is_bowed(0, region, &stages.rays, 1.02 * angle), "{angle}");
+    }
+
+    #[test]
+    fn a_border_turns_where_the_surface_goes_on_at_a_small_angle_and_not_at_a_step_or_a_right_angle() {
+        // A face of 12 x 12 tiles, and beyond it a slant, a step, a right angle, or the same plane. In q, about 40, with a
+        // column being 1/192 of the depth, a slope of 0.05 a column is 13 degrees.
+        let beyond = |slope: f64, step: f64| {
+            let made = Made::exact(SIZE, |u, v| {
+                let out = [72.0 - u as f64, u as f64 - 119.0, 40.0 - v as f64, v as f64 - 87.0]
+                    .into_iter()
+                    .fold(0.0, f64::max);
+                40.0 - slope * out - if out > 0.0 { step } else { 0.0 }
+            });
+            let mut stages = Stages::tiles(&made, noise(0.0));
+            stages.divide(|column, row| if (18..30).contains(&column) && (10..22).contains(&row) { 0 } else { NONE });
+            let around = CellBox { first: [18, 10], last: [29, 21] };
+            Border { grid: stages.grid(), all: stages.all(), rays: &stages.rays, id: 0 }.turns(&around)
+        };
+        assert!(beyond(0.05, 0.0), "a slant of 13 degrees");
+        assert!(!beyond(0.0, 0.0), "the same plane");
+        assert!(!beyond(0.4, 0.0), "a right angle");
+        assert!(!beyond(0.05, 10.0), "a step");
+    }
+}

@@ -345,3 +345,180 @@ impl Continuity {
         self.has_enough() && self.is_better(by_plane, LOOSE_GAIN) && is_bent
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::planar::testing::{Made, SIGMA, Stages, noise};
+
+    const SIZE: [usize; 2] = [192, 144];
+
+    /// What noise is expected: of a smooth part little.
+    fn expected() -> NoiseModel {
+        noise(0.2 * SIGMA)
+    }
+
+    /// A wall and a ball of that radius in pixels before it, seen by the camera that is assumed.
+    fn ball(seed: u64, radius: f64) -> Made {
+        // The wall at depth 1/20, the ball's middle at 1/40; a pixel is 1/192 of the depth.
+        let (depth, focal) = (1.0 / 40.0, 192.0);
+        let r = radius * depth / focal;
+        Made::noisy(SIZE, seed, |u, v| {
+            let ray = [(u - 96.0) / focal, (v - 72.0) / focal, 1.0];
+            let [rays, along] = [dot(ray, ray), ray[2] * depth];
+            let root = along * along - rays * (depth * depth - r * r);
+            if root > 0.0 { rays / (along - root.sqrt()) } else { 20.0 }
+        })
+    }
+
+    /// Pixels of curved regions and of all regions, of tiles that lie wholly within a circle or wholly outside.
+    fn curved_pixels(stages: &Stages, radius: f64, inside: bool) -> [f64; 2] {
+        let (grid, mut pixels) = (stages.grid(), [0.0; 2]);
+        for at in 0..grid.len() {
+            let [u, v] = grid.middle(grid.place(at));
+            let distance = (u - 96.0).hypot(v - 72.0);
+            let is_here = if inside { distance < radius - 4.0 } else { distance > radius + 8.0 };
+            if is_here && let Some(region) = stages.all().get(grid.region[at] as usize) {
+                let own = f64::from(grid.pixels(at));
+                pixels = [pixels[0] + if region.is_curved { own } else { 0.0 }, pixels[1] + own];
+            }
+        }
+        pixels
+    }
+
+    #[test]
+    fn the_facets_of_a_ball_are_curved_and_the_wall_behind_it_is_not() {
+        for (seed, radius) in [(1, 50.0), (2, 40.0), (3, 30.0), (4, 55.0)] {
+            let stages = Stages::judged(&ball(seed, radius), expected());
+            let [curved, all] = curved_pixels(&stages, radius, true);
+            assert!(all > 500.0 && curved > 0.9 * all, "{curved} of {all} pixels of a ball of {radius}");
+            let [curved, all] = curved_pixels(&stages, radius, false);
+            assert!(all > 10_000.0 && curved == 0.0, "{curved} of {all} pixels of the wall");
+            let evidence = &stages.run.curvature.evidence;
+            assert_eq!(evidence.len(), stages.all().len());
+            assert!(stages.all().iter().zip(evidence).all(|(region, sign)| region.is_curved == sign.is_some()));
+        }
+    }
+
+    #[test]
+    fn a_column_is_curved_by_its_own_bow() {
+        // One region, whatever growth makes of it.
+        let made = Made::noisy(SIZE, 3, |u, _| 40.0 - 0.004 * (u - 96.0).powi(2).min(60.0f64.powi(2)));
+        let mut stages = Stages::tiles(&made, expected());
+        stages.divide(|column, _| if (10..38).contains(&column) { 0 } else { NONE });
+        stages.run.merger.edges.clear();
+        stages.judge();
+        assert_eq!(stages.run.curvature.evidence, [Some(Evidence::Bow)]);
+    }
+
+    #[test]
+    fn a_flat_wall_with_white_noise_is_not_curved() {
+        for seed in 0..20 {
+            let [a, b] = [0.02 * (seed as f64 - 10.0), 0.1 - 0.01 * seed as f64];
+            let made = Made::noisy(SIZE, seed, |u, v| 40.0 + a * u + b * v).with_holes(seed, 0.05);
+            let stages = Stages::judged(&made, expected());
+            assert!(stages.all().iter().all(|region| !region.is_curved), "seed {seed}");
+        }
+    }
+
+    #[test]
+    fn a_roof_of_two_planes_is_not_curved_however_steep() {
+        for (seed, slope) in [(1, 0.1), (2, 0.15), (3, 0.2), (4, 0.3), (5, 0.5)] {
+            let made = Made::noisy(SIZE, seed, |u, v| 40.0 + 0.02 * v - slope * (u - 94.0).abs());
+            let stages = Stages::judged(&made, expected());
+            let signs = &stages.run.curvature.evidence;
+            let large = stages.all().iter().filter(|region| region.sums.n > 5000.0);
+            assert_eq!(large.clone().count(), 2, "slope {slope}");
+            assert!(large.clone().all(|region| !region.is_curved), "slope {slope}: {signs:?}");
+        }
+    }
+
+    #[test]
+    fn one_quadratic_runs_on_through_two_halves_of_a_bowl_and_through_no_roof() {
+        let halves = |seed: u64, q: fn(f64) -> f64| {
+            let mut stages = Stages::tiles(&Made::noisy(SIZE, seed, |u, v| 40.0 + 0.02 * v + q(u - 95.5)), expected());
+            stages.divide(|column, _| u32::from(column >= 24));
+            stages.list_edges();
+            stages.judge();
+            let run = &stages.run;
+            let context = Context {
+                pyramid: &run.pyramid,
+                all: &run.regions.all,
+                noise: &stages.noise,
+                is_redundant: &run.redundancy.is_redundant,
+                boxes: &run.curvature.boxes,
+                bows: &run.curvature.bows,
+            };
+            let both = context.joint(0, 1);
+            let by_planes = both.sums.iter().map(|sums| sums.by_planes - sums.cells).sum();
+            let [is_close, is_better] = [both.is_close(JOINT_MISS), both.is_better(by_planes, JOINT_GAIN)];
+            assert_eq!(both.is_smooth().is_some(), is_close && is_better);
+            [is_close, is_better]
+        };
+        for seed in 0..5 {
+            assert_eq!(halves(seed, |u| -0.002 * u * u), [true, true], "a bowl, seed {seed}");
+            assert_eq!(halves(seed, |u| -0.2 * u.abs()), [false, false], "a roof, seed {seed}");
+            assert_eq!(halves(seed, |_| 0.0), [true, false], "a wall, seed {seed}");
+        }
+    }
+
+    #[test]
+    fn a_small_region_and_what_is_around_it_bend_on_a_bowl_and_not_on_a_roof() {
+        let bends = |seed: u64, q: fn(f64) -> f64| {
+            let made = Made::noisy(SIZE, seed, |u, v| 40.0 + 0.01 * v + SIGMA * q(u - 95.5));
+            let mut stages = Stages::tiles(&made, noise(0.0));
+            // Eight tiles by four, around the ridge.
+            stages.divide(|column, row| if (20..28).contains(&column) && (10..14).contains(&row) { 0 } else { NONE });
+            stages.run.merger.edges.clear();
+            stages.judge();
+            let run = &stages.run;
+            let context = Context {
+                pyramid: &run.pyramid,
+                all: &run.regions.all,
+                noise: &stages.noise,
+                is_redundant: &run.redundancy.is_redundant,
+                boxes: &run.curvature.boxes,
+                bows: &run.curvature.bows,
+            };
+            context.surroundings(0).bends()
+        };
+        for seed in 0..5 {
+            assert!(bends(seed, |u| -0.05 * u * u), "a bowl, seed {seed}");
+            assert!(!bends(seed, |u| -0.4 * u.abs()), "a low roof, seed {seed}");
+            assert!(!bends(seed, |u| -3.0 * u.abs()), "a steep roof, seed {seed}");
+            assert!(!bends(seed, |_| 0.0), "a wall, seed {seed}");
+        }
+    }
+
+    #[test]
+    fn two_surfaces_are_apart_from_six_deviations_on_where_they_touch() {
+        for (deviations, expected) in [(0.0, false), (5.5, false), (7.0, true), (-7.0, true)] {
+            // They touch in the middle of the tiles before the border, column 62; elsewhere the step is another.
+            let q =
+                |u: f64, v: f64| 40.0 + if u < 64.0 { 0.0 } else { deviations * SIGMA + 0.1 * (u - 62.0) } + 0.01 * v;
+            let made = Made::exact([128, 32], |u, v| q(u as f64, v as f64));
+            let mut stages = Stages::tiles(&made, noise(0.0));
+            stages.divide(|column, _| u32::from(column >= 16));
+            stages.list_edges();
+            let [edge] = &stages.run.merger.edges[..] else { panic!("one edge between two regions") };
+            assert_eq!(are_apart(stages.all(), &stages.noise, edge), expected, "{deviations} deviations");
+        }
+    }
+
+    #[test]
+    fn planes_turn_gently_between_8_and_23_and_a_half_degrees() {
+        let camera = Stages::tiles(&Made::exact(SIZE, |_, _| 40.0), noise(0.0)).rays;
+        for (degrees, expected) in [(0.0, false), (7.0, false), (9.0, true), (22.5, true), (25.0, false), (90.0, false)]
+        {
+            // Two planes through the same point of the middle, symmetrically turned about the rows.
+            let [one, other] = [-0.5, 0.5].map(|way: f64| {
+                let slope = 40.0 / 192.0 * (way * degrees).to_radians().tan();
+                let made = Made::exact(SIZE, |u, _| 40.0 + slope * (u as f64 - 96.0));
+                let mut stages = Stages::tiles(&made, noise(0.0));
+                stages.divide(|_, _| 0);
+                stages.all()[0]
+            });
+            assert_eq!(turn_gently(&one, &other, &camera), expected, "{degrees} degrees");
+        }
+    }
+}

@@ -267,3 +267,114 @@ fn errors_of_source(found: &Detection, labels: DepthView<'_, u16>, enlargement: 
 fn widen(covariance: &mut [[f64; 4]; 4], times: f64) {
     covariance.as_flattened_mut().iter_mut().for_each(|number| *number *= times);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Measure;
+    use crate::components::Connectivity;
+    use crate::util::random::Random;
+
+    /// The first places of source pixels that are two or three wide, and how long the whole is.
+    fn firsts(random: &mut Random, count: usize) -> (Vec<u32>, usize) {
+        let mut next = 0;
+        let mut first = |_| {
+            let first = next;
+            next += random.whole(2, 3) as u32;
+            first
+        };
+        let firsts = (0..count).map(&mut first).collect();
+        (firsts, next as usize)
+    }
+
+    #[test]
+    fn labels_that_are_enlarged_and_shrunk_again_are_the_same_and_each_pixel_has_that_of_its_source() {
+        let (mut random, mut image, mut pixels) = (Random::new(2), vec![9; 3], Vec::new());
+        for _ in 0..20 {
+            let [(columns, width), (rows, height)] = [0; 2].map(|_| {
+                let count = random.whole(1, 30);
+                firsts(&mut random, count)
+            });
+            let enlargement = Enlargement { columns: &columns, rows: &rows, factor: [2.5, 2.5] };
+            let labels: Vec<u16> = (0..columns.len() * rows.len()).map(|_| random.whole(0, 5) as u16).collect();
+            let map = vec![1.0f32; width * height];
+            let map = DepthView::new(&map, width, height).unwrap();
+            let whole = enlarge(&labels, &enlargement, &map, &mut image).unwrap();
+            assert_eq!((whole.width(), whole.height()), (width, height));
+            for (u, v) in (0..height).flat_map(|v| (0..width).map(move |u| (u, v))) {
+                let [column, row] = [(u, &columns), (v, &rows)]
+                    .map(|(at, firsts)| firsts.iter().filter(|&&first| first as usize <= at).count() - 1);
+                assert_eq!(whole.row(v)[u], labels[row * columns.len() + column], "at {u}, {v}");
+            }
+            let source = shrunk(&whole, &enlargement, &mut pixels).unwrap();
+            assert_eq!(source.rows().flatten().map(|&label| label as u16).collect::<Vec<_>>(), labels);
+            // What is missing of the whole is missing of the source.
+            assert_eq!(source.valid_pixels(), labels.iter().filter(|&&label| label > 0).count());
+        }
+    }
+
+    #[test]
+    fn the_stages_see_the_camera_of_the_source_and_parameters_for_its_pixels_and_neither_stays() {
+        let camera = Intrinsics { fx: 500.0, fy: 480.0, cx: 319.5, cy: 200.0 };
+        let sensor = Sensor { measure: Measure::Disparity, intrinsics: Some(camera), ..Sensor::default() };
+        let enlargement = Enlargement { columns: &[0], rows: &[0], factor: [2.0, 3.0] };
+        let params = Planar { min: 600, ray: 0.6, ..Planar::default() };
+        let mut runner = Runner { params, ..Runner::default() };
+        let mut told = Vec::new();
+        let mut observer = |stage| told.push(stage);
+        let mut job = Job { sensor, threads: 1, curved: true, joiner: None, observer: &mut observer };
+        with_source(&mut runner, &mut job, &enlargement, |runner, job| {
+            assert_eq!((runner.params.min, job.curved), (100, true));
+            assert!((runner.params.ray - 0.6 / 6.0f64.sqrt()).abs() < 1e-12);
+            let source = job.sensor.intrinsics.unwrap();
+            // The middle of a source pixel is the middle of its block.
+            for [u, v] in [[0.0, 0.0], [7.0, 3.0], [100.0, 60.0]] {
+                let whole = camera.ray((u + 0.5) * 2.0 - 0.5, (v + 0.5) * 3.0 - 0.5);
+                let found = source.ray(u, v);
+                (0..3).for_each(|i| assert!((whole[i] - found[i]).abs() < 1e-12, "{found:?}, not {whole:?}"));
+            }
+            ["tiles", "grow", STAGES[0], STAGES[3]].into_iter().for_each(|stage| job.done(stage));
+            Ok(())
+        })
+        .unwrap();
+        assert_eq!((runner.params, job.sensor), (params, sensor));
+        // Stages of the whole map are told by the whole map alone.
+        assert_eq!(told, ["tiles", "grow"]);
+        // A plane of the source has a tile, unless fewer pixels are asked for.
+        for (min, expected) in [(30, TILE), (10, 10), (0, 0)] {
+            let mut runner = Runner { params: Planar { min, ..params }, ..Runner::default() };
+            let mut job = Job { sensor, threads: 1, curved: false, joiner: None, observer: &mut |_| () };
+            with_source(&mut runner, &mut job, &enlargement, |runner, _| {
+                assert_eq!(runner.params.min, expected);
+                Ok(())
+            })
+            .unwrap();
+        }
+    }
+
+    #[test]
+    fn pieces_of_one_label_are_one_group_and_those_of_two_stay_two() {
+        let labels: [u16; 24] = [
+            1, 1, 0, 1, 0, 2, //
+            0, 0, 0, 0, 0, 2, //
+            2, 0, 3, 3, 0, 0, //
+            2, 0, 0, 0, 1, 1, //
+        ];
+        let view = DepthView::new(&labels, 6, 4).unwrap().valid_range(1, u16::MAX).unwrap();
+        let mut grouper = ConnectedComponents::default();
+        let mut pieces = Pieces::default();
+        for _ in 0..2 {
+            grouper.group(&view, &Connectivity::new(view.validity(), 0.0).unwrap(), 1);
+            assert_eq!(grouper.groups().count(), 6);
+            pieces.join(&view, &mut grouper);
+            assert_eq!(grouper.groups().sizes(), [5, 4, 2]);
+        }
+    }
+
+    #[test]
+    fn errors_are_widened_by_as_much_as_pixels_were_repeated() {
+        let mut covariance = [[1.0, 2.0, 3.0, 4.0]; 4];
+        widen(&mut covariance, 6.0);
+        assert_eq!(covariance, [[6.0, 12.0, 18.0, 24.0]; 4]);
+    }
+}

@@ -161,3 +161,126 @@ impl Trace {
         factors.map(scaled).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{Made, SENSOR, SIGMA, Stages, noise};
+    use super::super::trace::Against;
+    use super::*;
+    use crate::camera::Measure;
+    use crate::noise::SensorNoise;
+    use crate::sensor::Sensor;
+
+    /// A run that found nothing in a map of 16 x 16.
+    fn run() -> Stages {
+        let mut stages = Stages::tiles(&Made::noisy([16, 16], 3, |_, _| 40.0), noise(0.0));
+        stages.divide(|_, _| 0);
+        let run = &mut stages.run;
+        run.image = vec![0; run.affine.q.len()];
+        run.contacts.join([].into_iter(), &mut run.regions.all, &mut run.image, 1);
+        stages
+    }
+
+    fn out() -> Detection {
+        Detection { width: 16, height: 16, labels: vec![0; 256], ..Detection::default() }
+    }
+
+    /// What was seen of a measured pixel in a full and flat tile.
+    fn trace() -> Trace {
+        Trace { q: 40.0, tile: [16.0, 0.5], most: 4.0, ..Trace::new([3, 5], SENSOR) }
+    }
+
+    fn against(off: f64, is_curved: bool) -> Vec<Against> {
+        vec![Against { id: 0, off, is_curved, pixels: 500.0 }]
+    }
+
+    #[test]
+    fn the_verdict_is_the_first_reason_that_the_stages_had() {
+        let stages = run();
+        let run = &stages.run;
+        let min = run.params.min;
+        let fated = |fate: Fate| Trace { fate, ..trace() }.verdict(run, &out());
+        assert_eq!(Trace { q: f64::NAN, fate: Fate::Curved, ..trace() }.verdict(run, &out()), Verdict::NotMeasured);
+        assert_eq!(fated(Fate::Small(30.0)), Verdict::Small { pixels: 30, min, early: true });
+        assert_eq!((fated(Fate::Curved), fated(Fate::EdgeOn)), (Verdict::Curved, Verdict::EdgeOn));
+        assert_eq!(fated(Fate::None), Verdict::Alone);
+        let seen = |tile: [f64; 2], against: Vec<Against>| Trace { tile, against, ..trace() }.verdict(run, &out());
+        assert_eq!(seen([7.0, 0.5], vec![]), Verdict::Sparse { pixels: 7, least: 8 });
+        assert_eq!(seen([8.0, 0.5], vec![]), Verdict::Alone);
+        assert_eq!(seen([16.0, 3.0], vec![]), Verdict::Uneven { roughness: 3.0 });
+        assert_eq!(seen([16.0, 3.0], against(5.0, false)), Verdict::Off { off: 5.0, most: 4.0, label: 0 });
+        assert_eq!(seen([16.0, 3.0], against(50.0, false)), Verdict::Uneven { roughness: 3.0 });
+        assert_eq!(seen([16.0, 3.0], against(3.0, true)), Verdict::Curved);
+        assert_eq!(seen([16.0, 3.0], against(5.0, true)), Verdict::Uneven { roughness: 3.0 });
+        let piece = Trace { assigned: 1, piece: 12, ..trace() };
+        assert_eq!(piece.verdict(run, &out()), Verdict::Small { pixels: 12, min, early: false });
+        // A pixel that has a plane has it whatever else was seen.
+        let mut found = out();
+        found.labels[5 * 16 + 3] = 1;
+        let place = crate::detection::PixelBox { u_min: 0, v_min: 0, u_max: 15, v_max: 15 };
+        found.planes = vec![crate::detection::Plane::new(1, 222, place)];
+        let seen = Trace { fate: Fate::Curved, assigned: 1, against: against(1.5, false), ..trace() };
+        assert_eq!(seen.verdict(run, &found), Verdict::Plane { label: 1, pixels: 222, off: Some(1.5) });
+    }
+
+    #[test]
+    fn a_larger_inlier_threshold_is_suggested_that_reaches_the_pixel_and_none_beyond_the_most() {
+        let thresholds = |least: f64| trace().inlier_thresholds(least).into_iter().flatten().collect::<Vec<_>>();
+        let found = thresholds(5.0);
+        assert!(
+            found.len() > 2
+                && found.iter().all(|(name, value)| *name == "inlier-threshold" && (5.0..=12.0).contains(value))
+        );
+        assert!(found.windows(2).all(|pair| pair[0].1 < pair[1].1), "the smallest change first: {found:?}");
+        assert_eq!(thresholds(12.5), []);
+    }
+
+    #[test]
+    fn the_noise_that_is_suggested_is_so_many_times_the_one_in_use_at_the_pixel() {
+        let stages = run();
+        let value = |changes: &[Change], name: &str| -> Vec<f64> {
+            changes.iter().flatten().filter(|(own, _)| *own == name).map(|(_, value)| *value).collect()
+        };
+        // Disparity: a deviation in map units.
+        let seen = Trace { noise: Some(stages.noise), ..trace() };
+        for least in [1.0, 1.7, 2.5] {
+            let noises = value(&seen.noises(&stages.run, least), "noise");
+            assert!((noises[0] / (1.01 * least * SIGMA) - 1.0).abs() < 0.1, "{noises:?}");
+            assert!(
+                noises.windows(2).all(|pair| pair[0] < pair[1]) && noises.iter().all(|noise| *noise <= 4.1 * SIGMA)
+            );
+        }
+        assert_eq!(Trace { noise: None, ..trace() }.noises(&stages.run, 1.0), [] as [Change; 0]);
+        // Depth: at 2 m the base and the growth together are so many times what they were.
+        let measure = Measure::Depth { metres: 0.001 };
+        let model = NoiseModel::new(measure, SensorNoise::Depth { base: 0.002, growth: 0.0015 }, 0.0).unwrap();
+        let seen = Trace { q: 0.5, noise: Some(model), sensor: Sensor { measure, ..SENSOR }, ..trace() };
+        let changes = seen.noises(&stages.run, 2.0);
+        let [base, growth] = ["noise", "noise-growth"].map(|name| value(&changes, name)[0]);
+        let (before, after) = (0.002 + 0.0015 * 4.0, base + growth * 4.0);
+        assert!((after / (2.02 * before) - 1.0).abs() < 0.05, "{after} m, before it was {before}");
+        assert!((base / growth / (0.002 / 0.0015) - 1.0).abs() < 0.1, "the two grow alike: {base}, {growth}");
+    }
+
+    #[test]
+    fn what_is_tried_suits_the_verdict() {
+        let stages = run();
+        let seen = Trace { noise: Some(stages.noise), ..trace() };
+        let names = |verdict: Verdict| {
+            let changes = seen.changes(&verdict, &stages.run);
+            changes.iter().map(|changes| changes[0][0].0).collect::<Vec<_>>()
+        };
+        assert_eq!(names(Verdict::Small { pixels: 50, min: 100, early: false }), ["min"]);
+        assert_eq!(names(Verdict::Off { off: 6.0, most: 4.0, label: 1 }), ["inlier-threshold", "noise"]);
+        assert_eq!(names(Verdict::Uneven { roughness: 2.0 }), ["min", "inlier-threshold", "noise"]);
+        let dropped = Verdict::Dropped { parameter: "min-area", value: 0.5, limit: Limit::AtLeast(1.0) };
+        assert_eq!(seen.changes(&dropped, &stages.run), [[vec![("min-area", 0.49)], vec![("min-area", 0.0)]]]);
+        assert_eq!(names(Verdict::NotMeasured), [""; 0]);
+        // A slight bow may be the sensor's, a strong one is not.
+        assert_eq!(names(Verdict::Curved), [""; 0]);
+        for (bow, expected) in [(1.4, 1), (1.6, 0)] {
+            let seen = Trace { bow: Some(bow), noise: Some(stages.noise), ..trace() };
+            assert_eq!(seen.changes(&Verdict::Curved, &stages.run).len(), expected);
+        }
+    }
+}

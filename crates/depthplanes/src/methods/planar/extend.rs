@@ -251,3 +251,199 @@ fn relabel(groups: &mut [[u16; LANES]], into: &[u16]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::planar::testing::{Made, SIGMA, Stages, THRESHOLD, bands, noise, planes};
+    use crate::util::random::Random;
+
+    /// A floor.
+    fn plane(u: usize, v: usize) -> f64 {
+        40.0 + 0.02 * u as f64 - 0.03 * v as f64
+    }
+
+    /// Regions of a clean floor: the left half, and the right one, so many deviations higher.
+    fn floor(deviations: f64) -> Stages {
+        let step = |u: usize| if u < 64 { 0.0 } else { deviations * SIGMA };
+        let mut stages = Stages::tiles(&Made::exact([128, 64], |u, v| plane(u, v) + step(u)), noise(0.0));
+        stages.divide(|column, _| u32::from(column >= 16));
+        stages
+    }
+
+    /// What planes reach of a map whose pixels have some labels so far, and the pairs of regions that touch there.
+    fn flood(
+        stages: &Stages,
+        made: &Made,
+        labels: &[u16],
+        bands: &[Range<usize>],
+        threads: usize,
+    ) -> (Vec<u16>, Vec<[u16; 2]>) {
+        let affine = Stages::tiles(made, noise(0.0)).run.affine;
+        let mut image = vec![0; affine.q.len()];
+        for (row, labels) in image.chunks_mut(affine.stride).zip(labels.chunks(made.width)) {
+            row[..made.width].copy_from_slice(labels);
+        }
+        let (mut boundary, mut flood) = (Boundary::default(), Flood::default());
+        boundary.find(&image, affine.stride, threads);
+        flood.flood(&affine, &planes(stages.all(), &stages.noise), &boundary, bands, &mut image, threads);
+        let labels = image.chunks(affine.stride).take(made.height).flat_map(|row| row[..made.width].to_vec()).collect();
+        let mut pairs: Vec<[u16; 2]> = flood.touching().flat_map(|touching| touching.pairs.clone()).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        (labels, pairs)
+    }
+
+    #[test]
+    fn a_strip_of_one_pixel_that_continues_a_plane_is_taken_in_and_one_that_is_off_it_is_not() {
+        for (off, expected) in [(0.0, true), (3.0, true), (-3.0, true), (6.0, false), (-6.0, false)] {
+            // From the floor on the left to the right and round a corner, over a band's edge.
+            let is_strip = |u: usize, v: usize| v == 10 && (40..100).contains(&u) || u == 99 && (10..60).contains(&v);
+            let made = Made::exact([128, 64], |u, v| match () {
+                _ if u < 40 => plane(u, v),
+                _ if is_strip(u, v) => plane(u, v) + off * SIGMA,
+                _ => plane(u, v) + 5.0,
+            });
+            let labels: Vec<u16> = (0..128 * 64).map(|at| u16::from(at % 128 < 40)).collect();
+            for bands in [bands(&[0, 4]), bands(&[0, 1, 3, 4])] {
+                let (image, touching) = flood(&floor(0.0), &made, &labels, &bands, 1);
+                for (at, &label) in image.iter().enumerate() {
+                    let [u, v] = [at % 128, at / 128];
+                    assert_eq!(
+                        label,
+                        u16::from(u < 40 || expected && is_strip(u, v)),
+                        "{u}, {v}, {off} deviations off"
+                    );
+                }
+                assert_eq!(touching, [[0; 2]; 0]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_plane_reaches_what_a_plain_flood_reaches_over_pixels_that_lie_on_it() {
+        let mut random = Random::new(4);
+        for round in 0..12 {
+            let share = random.between(0.5, 0.75);
+            let made = Made::exact([128, 64], |u, v| match random.uniform() {
+                x if x < share => plane(u, v) + SIGMA * random.between(-3.9, 3.9),
+                x if x < share + 0.1 => f64::NAN,
+                _ => plane(u, v) + SIGMA * (4.1 + random.uniform()),
+            });
+            let labels: Vec<u16> = (0..128 * 64)
+                .map(|_| if random.uniform() < 0.003 { 1 } else { u16::from(random.uniform() < 0.01) * BENT })
+                .collect();
+            let stages = floor(0.0);
+            let mut expected = labels.clone();
+            let mut queue: Vec<usize> = (0..128 * 64).filter(|&at| labels[at] == 1).collect();
+            while let Some(at) = queue.pop() {
+                let [u, v] = [at % 128, at / 128];
+                let beside = [(u > 0, -1), (u < 127, 1), (v > 0, -128), (v < 63, 128)];
+                for beside in beside.into_iter().filter(|(is, _)| *is).map(|(_, step)| at.wrapping_add_signed(step)) {
+                    let off =
+                        f64::from(made.q[beside]) - stages.all()[0].at((beside % 128) as f64, (beside / 128) as f64);
+                    if expected[beside] == 0 && off.abs() <= THRESHOLD * SIGMA {
+                        expected[beside] = 1;
+                        queue.push(beside);
+                    }
+                }
+            }
+            let bands = bands([&[0, 4][..], &[0, 1, 2, 4]][round % 2]);
+            for threads in [1, 2] {
+                let (image, _) = flood(&stages, &made, &labels, &bands, threads);
+                let differs: Vec<usize> = (0..128 * 64).filter(|&at| image[at] != expected[at]).collect();
+                // Over a band's edge planes reach on once, and what they reach there in one band goes on in both.
+                assert_eq!(differs, [0; 0], "round {round}");
+            }
+            assert!(
+                expected.iter().filter(|&&label| label == 1).count()
+                    > 2 * labels.iter().filter(|&&label| label == 1).count()
+            );
+        }
+    }
+
+    #[test]
+    fn regions_that_turn_little_by_little_are_not_joined_hand_in_hand() {
+        // Three strips, each turned against the one before by the most that is one plane; all three are not.
+        let strips = |turn: f64| {
+            let slope = |u: f64| turn * ((u - 32.0).max(0.0) + (u - 64.0).max(0.0));
+            let made = Made::exact([96, 64], |u, v| plane(u, v) + SIGMA * slope(u as f64));
+            let mut stages = Stages::tiles(&made, noise(0.0));
+            stages.divide(|column, _| column as u32 / 8);
+            stages
+        };
+        let cost = |turn: f64| merge_cost(&strips(turn).all()[0], &strips(turn).all()[1]);
+        let most = (1..200).map(|step| 0.01 * f64::from(step)).take_while(|&turn| cost(turn) < 0.95).last().unwrap();
+        let mut stages = strips(most);
+        let costs = [[0, 1], [1, 2], [0, 2]].map(|[a, b]| merge_cost(&stages.all()[a], &stages.all()[b]));
+        assert!(costs[0] <= 1.0 && costs[1] <= 1.0 && costs[2] > 1.0, "{costs:?}");
+        let stride = stages.run.affine.stride;
+        let mut image: Vec<u16> =
+            (0..stages.run.affine.q.len()).map(|at| (1 + at % stride / 32).min(3) as u16).collect();
+        let (mut boundary, mut contacts) = (Boundary::default(), Contacts::default());
+        boundary.find(&image, stride, 1);
+        contacts.list(&boundary, &image, 1);
+        contacts.join([].into_iter(), &mut stages.run.regions.all, &mut image, 1);
+        assert_eq!([0, 1, 2].map(|id| contacts.label(id)), [1, 1, 3]);
+    }
+
+    #[test]
+    fn a_pixel_between_two_planes_goes_to_the_nearer_and_they_are_listed_as_touching() {
+        // The strip in the middle lies on both planes, which are five deviations apart, nearer to the one or the other.
+        for (off, expected) in [(1.5, 1), (3.5, 2)] {
+            let stages = floor(5.0);
+            let made = Made::exact([128, 64], |u, v| plane(u, v) + if u == 64 { off * SIGMA } else { 0.0 });
+            let labels: Vec<u16> =
+                (0..128 * 64).map(|at| [1, 0, 2][usize::from(at % 128 > 63) + usize::from(at % 128 > 64)]).collect();
+            let (image, touching) = flood(&stages, &made, &labels, &bands(&[0, 4]), 1);
+            assert!((0..64).all(|v| image[v * 128 + 64] == expected), "{off} deviations");
+            assert_eq!(touching, [[1, 2]]);
+        }
+    }
+
+    #[test]
+    fn regions_of_one_plane_whose_pixels_touch_become_one_and_those_of_two_planes_do_not() {
+        for (deviations, touch, is_one) in [(0.0, true, true), (0.0, false, false), (8.0, true, false)] {
+            let mut stages = floor(deviations);
+            stages.run.regions.all.push(stages.all()[0]);
+            let (before, stride) = (stages.all().to_vec(), stages.run.affine.stride);
+            let edge = if touch { 65 } else { 66 };
+            // Curved regions lie below; a third region touches nothing.
+            let label = |[u, v]: [usize; 2]| match () {
+                _ if v >= 60 => BENT,
+                _ if v >= 50 => 3 * u16::from((70..80).contains(&u) && v < 58 && v > 52),
+                _ if u < 65 => 1,
+                _ if u >= edge => 2,
+                _ => 0,
+            };
+            let mut image: Vec<u16> =
+                (0..stages.run.affine.q.len()).map(|at| label([at % stride, at / stride])).collect();
+            let labels = image.clone();
+            let (mut boundary, mut contacts) = (Boundary::default(), Contacts::default());
+            for threads in [1, 2] {
+                image.copy_from_slice(&labels);
+                stages.run.regions.all.copy_from_slice(&before);
+                boundary.find(&image, stride, threads);
+                contacts.list(&boundary, &image, threads);
+                contacts.join([].into_iter(), &mut stages.run.regions.all, &mut image, threads);
+                let expected: Vec<u16> =
+                    labels.iter().map(|&label| if label == 2 && is_one { 1 } else { label }).collect();
+                assert!(image == expected, "{deviations} deviations, touching: {touch}");
+                assert_eq!([0, 1, 2].map(|id| contacts.label(id)), [1, if is_one { 1 } else { 2 }, 3]);
+                let pixels = before[0].sums.n + if is_one { before[1].sums.n } else { 0.0 };
+                assert_eq!(stages.all()[0].sums.n, pixels);
+            }
+            // What touches where planes reached on counts as well.
+            image.copy_from_slice(&labels);
+            stages.run.regions.all.copy_from_slice(&before);
+            let mut elsewhere = Touching::default();
+            elsewhere.prepare(8);
+            for (a, b) in [(2, 1), (1, 1), (0, 1), (1, BENT), (2, 1)] {
+                elsewhere.touch(a, b);
+            }
+            assert_eq!(elsewhere.pairs, [[1, 2]]);
+            contacts.join([&elsewhere].into_iter(), &mut stages.run.regions.all, &mut image, 1);
+            assert_eq!(contacts.label(1) == 1, deviations == 0.0);
+        }
+    }
+}

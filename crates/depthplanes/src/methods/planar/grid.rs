@@ -348,3 +348,73 @@ impl GridRows<'_> {
 pub(super) fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::planar::testing::{Stages, noise, patchy, pixels_that_count, squares_about};
+    use crate::util::random::Random;
+
+    #[test]
+    fn squares_and_residuals_about_any_plane_and_moments_of_a_cell_are_those_of_its_pixels() {
+        let (made, mut random) = (patchy(7), Random::new(8));
+        let stages = Stages::tiles(&made, noise(0.0));
+        for grid in &stages.run.pyramid.grids {
+            for at in (0..grid.len()).step_by(3) {
+                let place = grid.place(at);
+                let pixels = pixels_that_count(&made, grid.side, [place.column as usize, place.row as usize]);
+                if pixels.is_empty() {
+                    continue;
+                }
+                let cell = grid.cell(place);
+                let [a, b] = [0; 2].map(|_| random.between(-0.3, 0.3));
+                let [u0, v0, q0] = [random.between(0.0, 150.0), random.between(0.0, 90.0), random.between(20.0, 60.0)];
+                let c = random.between(-5.0, 5.0);
+                let count = pixels.len() as f64;
+                let squares = squares_about(&pixels, [a, b, c + q0], [u0, v0]);
+                let found = cell.squares_about([a, b, c], [u0, v0, q0]);
+                assert!((found - squares).abs() <= 1e-4 * squares + 1e-5 * count, "{found} squares, not {squares}");
+                let residual: f64 = pixels.iter().map(|[u, v, q]| q - (a * (u - u0) + b * (v - v0) + c + q0)).sum();
+                let found = cell.residual_about([a, b, c], [u0, v0, q0]);
+                assert!((found - residual).abs() <= 1e-4 * count, "{found}, not {residual}");
+                let (found, mut sums) = (cell.moments([u0, v0, q0]), Moments::default());
+                pixels.iter().for_each(|[u, v, q]| sums.add(u - u0, v - v0, q - q0));
+                assert_eq!(found.n, sums.n);
+                let root = |x: f64, y: f64| (x * y).sqrt();
+                for (what, found, expected, scale) in [
+                    ("u", found.u, sums.u, root(sums.n, sums.uu)),
+                    ("v", found.v, sums.v, root(sums.n, sums.vv)),
+                    ("q", found.q, sums.q, root(sums.n, sums.qq)),
+                    ("uu", found.uu, sums.uu, sums.uu),
+                    ("uv", found.uv, sums.uv, root(sums.uu, sums.vv)),
+                    ("vv", found.vv, sums.vv, sums.vv),
+                    ("uq", found.uq, sums.uq, root(sums.uu, sums.qq)),
+                    ("vq", found.vq, sums.vq, root(sums.vv, sums.qq)),
+                    ("qq", found.qq, sums.qq, sums.qq),
+                ] {
+                    assert!((found - expected).abs() <= 1e-4 * scale, "{what}: {found}, not {expected}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_neighbours_of_a_cell_are_the_four_beside_it_and_at_an_edge_it_takes_the_place_of_those_missing() {
+        let grid = Grid { columns: 5, rows: 7, ..Grid::new(4) };
+        for rows in [0..7, 2..5, 3..4] {
+            for (row, column) in rows.clone().flat_map(|row| (0..5).map(move |column| (row, column))) {
+                let place = Place::new(column, row);
+                assert_eq!(grid.place(grid.at(place)), place);
+                let mut expected = [place; 4];
+                let steps = [(-1, 0), (1, 0), (0, -1), (0, 1)];
+                for (expected, (right, down)) in expected.iter_mut().zip(steps) {
+                    let (u, v) = (column as isize + right, row as isize + down);
+                    if (0..5).contains(&u) && v >= 0 && rows.contains(&(v as usize)) {
+                        *expected = Place::new(u as usize, v as usize);
+                    }
+                }
+                assert_eq!(grid.neighbours_within(place, &rows), expected);
+            }
+        }
+    }
+}

@@ -287,3 +287,160 @@ pub(super) fn fewest(grid: &Grid) -> f32 {
     let share = if is_large(grid) { OF_CELL } else { OF_TILE };
     share * (grid.side * grid.side) as f32
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::planar::layout::SIDE;
+    use crate::methods::planar::testing::{Made, SIGMA, Stages, THRESHOLD, noise};
+    use crate::util::random::Random;
+
+    /// The numbers of the regions of the tiles between some columns.
+    fn ids_between(stages: &Stages, columns: Range<usize>, rows: usize) -> Vec<u32> {
+        let tiles = columns.step_by(SIDE).flat_map(|u| (0..rows).step_by(SIDE).map(move |v| [u, v]));
+        let mut ids: Vec<u32> = tiles.map(|at| stages.region_at(at)).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        ids
+    }
+
+    #[test]
+    fn regions_of_two_planes_that_meet_at_a_crease_end_at_it_and_have_the_plane_of_their_side() {
+        // Both turn by half a pixel's value a column: at right angles, in space.
+        for (seed, crease) in [(1, 63.5), (2, 63.5), (3, 62.0), (4, 65.3), (5, 71.5)] {
+            let q = |u: f64, v: f64| 40.0 - 0.5 * (u - crease).abs() + 0.02 * v;
+            let stages = Stages::grown(&Made::noisy([128, 96], seed, q), noise(0.0));
+            let edge = crease as usize / SIDE * SIDE;
+            let [left, right] = [0..edge, edge + SIDE..128].map(|columns| ids_between(&stages, columns, 96));
+            assert!(left.iter().all(|id| !right.contains(id)), "{left:?} and {right:?} at {crease}");
+            assert!(!left.contains(&NONE) && !right.contains(&NONE), "a tile has no region");
+            for (ids, places) in [(&left, [[2.0, 2.0], [50.0, 90.0]]), (&right, [[80.0, 2.0], [125.0, 90.0]])] {
+                for ([u, v], &id) in places.into_iter().flat_map(|place| ids.iter().map(move |id| (place, id))) {
+                    let region = &stages.all()[id as usize];
+                    // A small one's plane is known to less, far from it.
+                    if region.sums.n > 1000.0 {
+                        assert!((region.at(u, v) - q(u, v)).abs() < SIGMA, "region {id} at {u}, {v}");
+                    }
+                }
+            }
+            stages.check_sums();
+            let merged = Stages::merged(&Made::noisy([128, 96], seed, q), noise(0.0));
+            let large = merged.all().iter().filter(|region| region.sums.n > 1000.0).count();
+            assert_eq!(large, 2);
+        }
+    }
+
+    #[test]
+    fn every_tile_of_one_plane_with_noise_has_one_of_few_regions_and_these_are_one() {
+        for seed in 0..20 {
+            let [a, b] = [0.02 * (seed as f64 - 10.0), 0.15 - 0.01 * seed as f64];
+            let made = Made::noisy([128, 96], seed, |u, v| 40.0 + a * u + b * v).with_holes(seed, 0.1);
+            let stages = Stages::grown(&made, noise(0.0));
+            assert!((1..=4).contains(&stages.all().len()), "{} regions, seed {seed}", stages.all().len());
+            let pixels: f64 = stages.all().iter().map(|region| region.sums.n).sum();
+            assert_eq!(pixels, f64::from(stages.grid().sums.n.iter().sum::<f32>()), "seed {seed}");
+            stages.check_sums();
+            assert_eq!(Stages::merged(&made, noise(0.0)).all().len(), 1, "seed {seed}");
+        }
+    }
+
+    #[test]
+    fn clutter_is_no_region() {
+        let mut random = Random::new(2);
+        let made = Made::exact([128, 96], |_, _| random.between(20.0, 60.0));
+        let stages = Stages::grown(&made, noise(0.0));
+        assert_eq!(stages.all().len(), 0);
+        assert!(stages.run.pyramid.grids.iter().all(|grid| grid.region.iter().all(|&id| id == NONE)));
+    }
+
+    #[test]
+    fn a_flat_patch_amid_clutter_is_a_region_of_its_tiles_alone() {
+        let mut random = Random::new(3);
+        let made = Made::exact([128, 96], |u, v| {
+            let is_flat = (40..72).contains(&u) && (32..56).contains(&v);
+            if is_flat { 40.0 + 0.1 * u as f64 + SIGMA * random.gaussian() } else { random.between(20.0, 60.0) }
+        });
+        let stages = Stages::grown(&made, noise(0.0));
+        assert_eq!(stages.all().len(), 1);
+        for (row, column) in (0..24).flat_map(|row| (0..32).map(move |column| (row, column))) {
+            let is_flat = (10..18).contains(&column) && (8..14).contains(&row);
+            assert_eq!(stages.region_at([4 * column, 4 * row]) != NONE, is_flat, "tile {column}, {row}");
+        }
+    }
+
+    #[test]
+    fn tiles_with_few_pixels_start_no_region_but_join_one() {
+        // The lower half has 6 pixels a tile, the upper one all of them; a gap parts them, or not.
+        for (gap, expected) in [(0, true), (8, false)] {
+            let made = Made::exact([128, 64], |u, v| {
+                let is_there = v < 32 || (v >= 32 + gap && (u + 2 * v) % 4 < 2 && (u + v) % 4 != 1);
+                if is_there { 40.0 + 0.1 * u as f64 + 0.05 * v as f64 } else { f64::NAN }
+            });
+            let stages = Stages::grown(&made, noise(0.0));
+            assert!((3.0..8.0).contains(&stages.grid().pixels(12 * 32 + 3)), "{}", stages.grid().pixels(12 * 32 + 3));
+            let below = ids_between(&stages, 0..128, 64).contains(&NONE);
+            assert_eq!((stages.all().len(), !below), (1, expected));
+            assert_eq!(stages.region_at([60, 60]) == 0, expected);
+        }
+    }
+
+    #[test]
+    fn regions_of_a_map_in_bands_end_at_the_bands_and_are_numbered_one_after_the_other() {
+        // A tile in nine has no pixel, others in each band.
+        let is_hole = |u: usize, v: usize| (u / 4 + v / 4 * 5 + v / 16).is_multiple_of(9);
+        let made = Made::exact([128, 96], |u, v| {
+            if is_hole(u, v) { f64::NAN } else { 40.0 - 0.5 * (u as f64 - 63.5).abs() + 0.02 * v as f64 }
+        });
+        let mut stages = Stages::tiles(&made, noise(0.0));
+        stages.run.pyramid.bands = vec![0..2, 2..5, 5..6];
+        stages.run.regions.grow(&mut stages.run.pyramid, THRESHOLD, 2);
+        assert_eq!(stages.all().len(), 6);
+        for (band, rows) in [(0, 0..32), (1, 32..80), (2, 80..96)] {
+            let mut ids: Vec<u32> = rows
+                .step_by(SIDE)
+                .flat_map(|v| (0..128).step_by(SIDE).map(move |u| [u, v]))
+                .filter(|&[u, v]| {
+                    let has_none = stages.region_at([u, v]) == NONE;
+                    assert_eq!(has_none, is_hole(u, v), "at {u}, {v}");
+                    !has_none
+                })
+                .map(|at| stages.region_at(at))
+                .collect();
+            ids.sort_unstable();
+            ids.dedup();
+            assert_eq!(ids, [2 * band, 2 * band + 1]);
+        }
+        stages.check_sums();
+    }
+
+    #[test]
+    fn regions_of_slanted_patches_are_connected_and_have_the_sums_of_their_tiles() {
+        let mut random = Random::new(7);
+        let slopes: Vec<[f64; 3]> = (0..12)
+            .map(|_| [random.between(20.0, 60.0), random.between(-0.3, 0.3), random.between(-0.3, 0.3)])
+            .collect();
+        let made = Made::noisy([160, 96], 7, |u, v| {
+            let [q, a, b] = slopes[((u as usize + v as usize / 3) / 40 + v as usize / 40 * 4) % 12];
+            q + a * (u - 80.0) + b * (v - 48.0)
+        });
+        let stages = Stages::grown(&made, noise(0.005));
+        assert!(stages.all().len() >= 10, "{}", stages.all().len());
+        stages.check_sums();
+        let grid = stages.grid();
+        // Flood each region from its first tile.
+        for id in 0..stages.all().len() as u32 {
+            let own: Vec<usize> = (0..grid.len()).filter(|&at| grid.region[at] == id).collect();
+            let mut seen = vec![own[0]];
+            let mut next = 0;
+            while next < seen.len() {
+                for beside in grid.neighbours(grid.place(seen[next])).map(|place| grid.at(place)) {
+                    if grid.region[beside] == id && !seen.contains(&beside) {
+                        seen.push(beside);
+                    }
+                }
+                next += 1;
+            }
+            assert_eq!(seen.len(), own.len(), "region {id} is in pieces");
+        }
+    }
+}

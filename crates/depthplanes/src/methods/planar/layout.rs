@@ -148,3 +148,112 @@ impl<M: Send, T: Send, const N: usize> Rows for Bands<'_, M, T, N> {
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::planar::pyramid::Pyramid;
+    use crate::util::random::Random;
+
+    /// Fails unless every pixel's q is what the space says of its value, and is not a number where there is none.
+    fn check<T: Pixel>(affine: &mut AffineMap, map: DepthView<'_, T>, space: Space) {
+        affine.prepare(&map);
+        Pyramid::default().sum(&map, space, 1, affine);
+        let (validity, mut valid) = (map.validity(), 0);
+        for (at, &q) in affine.q.iter().enumerate() {
+            let [u, v] = [at % affine.stride, at / affine.stride];
+            let value = (u < map.width() && v < map.height()).then(|| map.row(v)[u]).filter(|&value| {
+                let number: f64 = value.into();
+                let missing = [0.0, validity.sentinel.into()].contains(&number) || !number.is_finite();
+                !missing && number >= validity.low.into() && number <= validity.high.into()
+            });
+            let expected = value.map(|value| space.q(value.into())).filter(|q| q.abs() <= f64::from(LARGEST_Q));
+            match expected {
+                Some(expected) => {
+                    assert!((f64::from(q) - expected).abs() <= 1e-6 * expected.abs(), "{q} at {u}, {v}: {expected}");
+                    valid += 1;
+                }
+                None => assert!(q.is_nan(), "{q} at {u}, {v}, where nothing was measured"),
+            }
+        }
+        assert_eq!(affine.valid_pixels, valid);
+    }
+
+    #[test]
+    fn q_of_every_pixel_is_what_the_space_says_and_no_number_where_nothing_was_measured() {
+        let mut random = Random::new(5);
+        let mut affine = AffineMap::default();
+        // Twice the same size, so that memory is reused.
+        for [width, height] in [[130, 37], [130, 37], [128, 16], [1, 1], [257, 5]] {
+            let special = [0.0, f32::NAN, f32::INFINITY, -3.5, 1e-17, 2e-16, 9e14, 2e15, 1e20, 7.0, 1.0, 99.0];
+            let floats: Vec<f32> = (0..width * height)
+                .map(|_| if random.uniform() < 0.3 { special[random.whole(0, 11)] } else { random.uniform() as f32 })
+                .collect();
+            let counts: Vec<u16> = (0..width * height).map(|_| random.whole(0, 3000) as u16).collect();
+            for space in [Space::Value, Space::InverseDepth { metres: 1.0 }, Space::InverseDepth { metres: 0.001 }] {
+                let view = DepthView::new(&floats, width, height).unwrap().missing_value(7.0);
+                check(&mut affine, view, space);
+                check(&mut affine, view.valid_range(0.5, 50.0).unwrap(), space);
+                let view = DepthView::new(&counts, width, height).unwrap().missing_value(2047);
+                check(&mut affine, view, space);
+                check(&mut affine, view.valid_range(500, 2500).unwrap(), space);
+            }
+        }
+    }
+
+    #[test]
+    fn the_pixels_of_a_tile_that_lie_on_a_plane_are_those_that_a_plain_loop_finds() {
+        let mut random = Random::new(6);
+        let q = (0..COLUMNS * ROWS).map(|_| if random.uniform() < 0.1 { f32::NAN } else { random.uniform() as f32 });
+        let affine =
+            AffineMap { width: COLUMNS, height: ROWS, stride: COLUMNS, rows: ROWS, q: q.collect(), valid_pixels: 0 };
+        for _ in 0..500 {
+            let [u, v] = [random.whole(0, COLUMNS - SIDE), random.whole(0, ROWS - SIDE)];
+            let [a, b] = [0; 2].map(|_| random.between(-0.2, 0.2));
+            let (c, distance) = (random.uniform(), random.between(0.0, 0.6));
+            let bits = affine.lie_on([u, v], [a, b, c].map(|x| x as f32), (distance * distance) as f32);
+            for (dv, du) in (0..SIDE).flat_map(|dv| (0..SIDE).map(move |du| (dv, du))) {
+                let off = f64::from(affine.q[(v + dv) * COLUMNS + u + du]) - (a * du as f64 + b * dv as f64 + c);
+                let is_on = off.abs() <= distance; // never for NaN
+                let is_close = (off.abs() - distance).abs() < 1e-5;
+                assert!(is_close || (bits >> (SIDE * dv + du) & 1 == 1) == is_on, "{du}, {dv}: {off} of {distance}");
+            }
+        }
+    }
+
+    #[test]
+    fn bands_cover_all_rows_once_and_are_as_many_as_the_size_asks_for() {
+        let mut random = Random::new(7);
+        for _ in 0..500 {
+            let (rows, stride) = (random.whole(1, 300), COLUMNS * random.whole(1, 40));
+            let bands: Vec<_> = cut_bands(rows, stride * rows * ROWS).collect();
+            let all: Vec<usize> = bands.iter().cloned().flatten().collect();
+            assert_eq!(all, (0..rows).collect::<Vec<_>>(), "{bands:?}");
+            let pixels: Vec<usize> = bands.iter().map(|band| band.len() * ROWS * stride).collect();
+            assert!(bands.len() <= MOST_BANDS && !pixels.contains(&0), "{bands:?}");
+            // Nobody cuts what is small, and a band of several is no smaller than half of what is wanted but for the last.
+            assert!(stride * rows * ROWS > BAND_PIXELS || bands.len() == 1, "{bands:?}");
+            assert!(bands.len() == MOST_BANDS || pixels[0] < BAND_PIXELS + ROWS * stride, "{bands:?}");
+            assert!(pixels[..bands.len() - 1].iter().all(|&pixels| 2 * pixels > BAND_PIXELS), "{bands:?}");
+        }
+    }
+
+    #[test]
+    fn each_band_is_handed_its_own_memory_and_its_own_rows_of_every_whole() {
+        let bands = [0..3, 3..4, 4..9, 9..10, 10..17];
+        for threads in [1, 2, 3] {
+            let (mut one, mut two) = ([0; 17 * 5], [0; 17 * 2]);
+            let mut memories = [0, 1, 2, 3, 4];
+            for_each_band(&bands, &mut memories, [(&mut one, 5), (&mut two, 2)], threads, |band, memory, [a, b]| {
+                assert_eq!([a.len(), b.len()], [5, 2].map(|per_row| per_row * band.len()));
+                a.fill(*memory + 1);
+                b.fill(*memory + 1);
+                *memory += 10;
+            });
+            let band_of = |row: usize| 1 + bands.iter().position(|band| band.contains(&row)).unwrap();
+            assert_eq!(one.to_vec(), (0..17 * 5).map(|at| band_of(at / 5)).collect::<Vec<_>>());
+            assert_eq!(two.to_vec(), (0..17 * 2).map(|at| band_of(at / 2)).collect::<Vec<_>>());
+            assert_eq!(memories, [10, 11, 12, 13, 14]);
+        }
+    }
+}

@@ -126,7 +126,7 @@ impl Merger {
     }
 
     /// Lists the edges of the region adjacency graph, on as many threads.
-    fn list_pairs(&mut self, grid: &Grid, threads: usize) {
+    pub(super) fn list_pairs(&mut self, grid: &Grid, threads: usize) {
         let Merger { edges, parts, .. } = self;
         for_row_blocks(threads, grid.rows, ROWS, parts, |part, rows| {
             vectorised(
@@ -341,4 +341,203 @@ pub(super) fn merge_cost(a: &Region, b: &Region) -> f64 {
         (sums.squares_about(joint.abc) - region.squares) / MERGE.of(1.0, region.variance, region.smooth)
     };
     added(&a.sums, a).max(added(&theirs, b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::planar::testing::{Made, SIGMA, Stages, cells_of, noise, patchy, plane_of, squares_about};
+    use crate::util::random::Random;
+    use std::collections::BTreeMap;
+
+    /// A map of tiles, with regions of some tiles each and gaps of one tile and more.
+    fn tiles(random: &mut Random, columns: usize, rows: usize) -> Grid {
+        let mut grid = Grid { columns, rows, ..Grid::new(4) };
+        grid.region = vec![NONE; columns * rows];
+        for _ in 0..columns * rows / 8 {
+            let id = [NONE, random.whole(0, 9) as u32][random.whole(0, 3).min(1)];
+            let [column, row] = [random.whole(0, columns - 1), random.whole(0, rows - 1)];
+            let size = [random.whole(1, 6), random.whole(1, 6)];
+            for row in row..(row + size[1]).min(rows) {
+                grid.region[row * columns..][column..(column + size[0]).min(columns)].fill(id);
+            }
+        }
+        grid
+    }
+
+    #[test]
+    fn edges_and_where_they_touch_are_what_a_look_at_each_tile_and_the_next_finds() {
+        let mut random = Random::new(4);
+        for round in 0..20 {
+            // More rows than are looked through at a time.
+            let grid = tiles(&mut random, 64, 1 + 45 * (round % 4));
+            let mut expected: BTreeMap<[u32; 2], [f64; 3]> = BTreeMap::new();
+            let at =
+                |column: usize, row: usize| (column < 64 && row < grid.rows).then(|| grid.region[row * 64 + column]);
+            for (row, column) in (0..grid.rows).flat_map(|row| (0..64).map(move |column| (row, column))) {
+                let own = at(column, row).unwrap();
+                for [right, down] in [[1, 0], [0, 1]] {
+                    let next = at(column + right, row + down);
+                    let beyond = at(column + 2 * right, row + 2 * down);
+                    let beside = if next == Some(NONE) { beyond } else { next };
+                    if let Some(beside) = beside.filter(|&id| id != own && id != NONE && own != NONE) {
+                        let edge = expected.entry([own.min(beside), own.max(beside)]).or_default();
+                        let place = [4.0 * column as f64 + 2.0, 4.0 * row as f64 + 2.0];
+                        *edge = [edge[0] + 1.0, edge[1] + place[0], edge[2] + place[1]];
+                    }
+                }
+            }
+            for threads in [1, 3] {
+                let mut merger = Merger::default();
+                merger.list_pairs(&grid, threads);
+                let found = merger.edges.iter().map(|edge| (edge.ids, [edge.contacts, edge.at[0], edge.at[1]]));
+                assert_eq!(found.collect::<Vec<_>>(), expected.clone().into_iter().collect::<Vec<_>>());
+                for edge in &merger.edges {
+                    let [count, u, v] = expected[&edge.ids];
+                    assert_eq!(edge.middle(), [u / count, v / count]);
+                }
+            }
+            assert!(grid.rows == 1 || expected.len() > 20);
+        }
+    }
+
+    #[test]
+    fn merging_costs_what_the_joint_plane_adds_to_the_worse_of_two_whichever_comes_first() {
+        let smooth = 0.02;
+        for seed in 1..8 {
+            let made = patchy(seed);
+            let mut stages = Stages::tiles(&made, noise(smooth));
+            stages.divide(|column, row| [0, 1, 2, 3][column / 7 % 2 + row / 5 % 2 * 2]);
+            let all = stages.all();
+            let pixels = [0, 1, 2, 3].map(|id| made.pixels_of(stages.grid(), id));
+            for (a, b) in (0..4).flat_map(|a| (0..4).map(move |b| (a, b))).filter(|(a, b)| a != b) {
+                let (joint, _) = plane_of(&[pixels[a].clone(), pixels[b].clone()].concat(), [0.0; 2]);
+                let added = [a, b].map(|id| {
+                    let more = squares_about(&pixels[id], joint, [0.0; 2]) - plane_of(&pixels[id], [0.0; 2]).1;
+                    more / (pixels[id].len() as f64 * (0.5 * SIGMA * SIGMA + 6.0 * smooth * smooth))
+                });
+                let (expected, found) = (added[0].max(added[1]), merge_cost(&all[a], &all[b]));
+                assert!((found - expected).abs() <= 1e-3 * expected, "{found}, not {expected}");
+                let other_way = merge_cost(&all[b], &all[a]);
+                assert!((found - other_way).abs() <= 1e-6 * found, "{found}, and {other_way} the other way round");
+            }
+        }
+    }
+
+    #[test]
+    fn pieces_of_one_plane_merge_and_planes_that_differ_by_more_than_the_noise_do_not() {
+        // A step of ten deviations, a crease of a pixel's value for each two, and a step that noise hides.
+        type Off = fn(f64) -> f64;
+        let kinds: [(&str, Off, usize); 4] = [
+            ("one plane", |_| 0.0, 1),
+            ("a step", |u| if u < 64.0 { 0.0 } else { 10.0 * SIGMA }, 2),
+            ("a crease", |u| -0.5 * (u - 63.5).abs(), 2),
+            ("a shallow step", |u| if u < 64.0 { 0.0 } else { 0.5 * SIGMA }, 1),
+        ];
+        for (name, off, expected) in kinds {
+            for seed in 0..5 {
+                let made = Made::noisy([128, 96], seed, |u, v| 40.0 + 0.05 * u - 0.02 * v + off(u));
+                let mut stages = Stages::tiles(&made, noise(0.0));
+                // Twelve pieces.
+                stages.divide(|column, row| (column / 8 + row / 8 * 4) as u32);
+                stages.merge();
+                assert_eq!(stages.all().len(), expected, "{name}, seed {seed}");
+                stages.check_sums();
+                let of = |column: usize| stages.region_at([4 * column, 40]);
+                assert_eq!([of(0) == of(15), of(16) == of(31), of(0) == of(31)], [true, true, expected == 1]);
+            }
+        }
+    }
+
+    #[test]
+    fn what_bows_by_a_small_angle_is_one_and_what_turns_at_a_crease_of_12_degrees_is_two() {
+        // A column is 1/128 of the depth; both creases cost more than the noise, and less than a bow may.
+        for (degrees, expected) in [(6.0, 1), (12.0, 2)] {
+            for seed in 0..5 {
+                let slope = 40.0 / 128.0 * (0.5 * f64::to_radians(degrees)).tan();
+                let made = Made::noisy([24, 128], seed, |u, _| 40.0 - slope * (u - 11.5).abs());
+                let mut stages = Stages::tiles(&made, noise(0.0));
+                stages.divide(|column, _| u32::from(column >= 3));
+                let cost = merge_cost(&stages.all()[0], &stages.all()[1]);
+                assert!(cost > 1.0 && cost < BOWED_MERGE, "{cost} at {degrees} degrees");
+                stages.merge();
+                assert_eq!(stages.all().len(), expected, "{degrees} degrees, seed {seed}");
+            }
+        }
+    }
+
+    #[test]
+    fn pieces_of_one_plane_that_are_far_apart_stay_two() {
+        let made = Made::noisy([128, 64], 3, |u, v| 40.0 + 0.05 * u - 0.02 * v);
+        let mut stages = Stages::tiles(&made, noise(0.0));
+        stages.divide(|column, _| [0, NONE, 1][column.saturating_sub(13).min(2)]);
+        stages.merge();
+        assert_eq!(stages.all().len(), 1, "a tile between is no gap");
+        stages.divide(|column, _| [0, NONE, NONE, 1][column.saturating_sub(13).min(3)]);
+        stages.merge();
+        assert_eq!(stages.all().len(), 2, "two tiles between are one");
+    }
+
+    #[test]
+    fn regions_that_are_left_have_numbers_without_gaps_and_their_own_tiles() {
+        let (made, mut random) = (patchy(5), Random::new(6));
+        for round in 0..30 {
+            let mut stages = Stages::tiles(&made, noise(0.01));
+            stages.divide(|column, row| (column / 3 + row / 3 * 13) as u32);
+            let Stages { run, rays, .. } = &mut stages;
+            run.merger.merge(&run.pyramid.grids[0], &mut run.regions, rays, 1);
+            let before: Vec<u32> = run.pyramid.grids[0].region.clone();
+            let roots: Vec<u32> = (0..run.regions.all.len() as u32).map(|id| run.merger.root(id)).collect();
+            let sums: Vec<_> = run.regions.all.iter().map(|region| region.sums).collect();
+            let dropped: Vec<bool> = sums.iter().map(|_| random.uniform() < 0.4).collect();
+            let edges: Vec<[u32; 2]> = run.merger.edges.iter().map(|edge| edge.ids).collect();
+            let mut order = dropped.iter();
+            run.merger.drop(&mut run.pyramid.grids[0], &mut run.regions, 1 + round % 3, |_| *order.next().unwrap());
+            let number = |id: u32| {
+                let is_left = |id: u32| roots[id as usize] == id && !dropped[id as usize];
+                let root = roots[id as usize];
+                if is_left(root) { (0..root).filter(|&before| is_left(before)).count() as u32 } else { NONE }
+            };
+            let expected: Vec<u32> = before.iter().map(|&id| if id == NONE { NONE } else { number(id) }).collect();
+            assert_eq!(run.pyramid.grids[0].region, expected);
+            let left: Vec<_> =
+                (0..roots.len() as u32).filter(|&id| roots[id as usize] == id && number(id) != NONE).collect();
+            assert_eq!(run.regions.all.len(), left.len());
+            (0..left.len()).for_each(|new| assert_eq!(run.regions.all[new].sums, sums[left[new] as usize]));
+            let renamed = edges.iter().map(|ids| ids.map(number)).filter(|ids| !ids.contains(&NONE));
+            assert_eq!(run.merger.edges.iter().map(|edge| edge.ids).collect::<Vec<_>>(), renamed.collect::<Vec<_>>());
+            assert!(
+                (0..left.len() as u32)
+                    .all(|id| run.merger.root(id) == id && cells_of(&run.pyramid.grids[0], id).count() > 0)
+            );
+            stages.check_sums();
+        }
+    }
+
+    #[test]
+    fn small_regions_are_dropped_and_more_than_an_image_can_tell_apart_are_an_error() {
+        let made = Made::noisy([128, 64], 3, |u, v| 40.0 + 0.05 * u - 0.02 * v);
+        let mut stages = Stages::tiles(&made, noise(0.0));
+        stages.divide(|_, _| 0);
+        let run = &mut stages.run;
+        let region = run.regions.all[0];
+        let some = |n: f64| {
+            let mut some = region;
+            some.sums.n = n;
+            some
+        };
+        let mut grid = Grid { columns: 4, rows: 1, ..Grid::new(4) };
+        grid.region = vec![0, 1, 2, 3];
+        let mut merger = Merger { into: vec![0, 1, 2, 3], ..Merger::default() };
+        run.regions.all = [100.0, 99.0, 101.0, 3.0].map(some).to_vec();
+        merger.drop_small(&mut grid, &mut run.regions, 100.0, 1).unwrap();
+        assert_eq!(run.regions.all.iter().map(|region| region.sums.n).collect::<Vec<_>>(), [100.0, 101.0]);
+        assert_eq!(grid.region, [0, NONE, 1, NONE]);
+        for (count, fits) in [(MAX_PLANES - 1, true), (MAX_PLANES, false)] {
+            run.regions.all = vec![some(100.0); count];
+            let mut merger = Merger { into: (0..count as u32).collect(), ..Merger::default() };
+            let result = merger.drop_small(&mut grid, &mut run.regions, 100.0, 1);
+            assert_eq!(result.is_ok(), fits, "{result:?}");
+        }
+    }
 }

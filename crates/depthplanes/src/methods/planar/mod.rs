@@ -89,3 +89,6 @@ impl Method for Whole {
         with_view!(map, map => self.counts.explain(&mut self.runner, &INFO, &map, job, at))
     }
 }
+
+#[cfg(test)]
+mod testing;

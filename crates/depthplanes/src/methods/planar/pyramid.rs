@@ -222,3 +222,129 @@ impl MapRows<'_> {
         valid
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::planar::layout::COLUMNS;
+    use crate::methods::planar::testing::{Made, SIGMA, Stages, THRESHOLD, noise, patchy};
+    use crate::methods::planar::thresholds::{FLAT, limit};
+    use crate::noise::SensorNoise;
+    use crate::util::random::Random;
+
+    #[test]
+    fn a_map_is_summed_the_same_on_any_number_of_threads_and_in_memory_of_another_map() {
+        let (mut other, mut affine) = (Pyramid::default(), AffineMap::default());
+        for (seed, threads) in [(1, 2), (2, 3), (3, 4)] {
+            let made = patchy(seed);
+            let stages = Stages::tiles(&made, noise(0.01));
+            affine.prepare(&made.view());
+            other.sum(&made.view(), Space::Value, threads, &mut affine);
+            other.expect(&noise(0.01), THRESHOLD, threads);
+            // Written out, numbers that are not numbers are equal too.
+            assert_eq!(format!("{other:?}"), format!("{:?}", stages.run.pyramid));
+        }
+    }
+
+    #[test]
+    fn a_cell_has_the_region_that_all_its_tiles_have_and_none_if_they_differ() {
+        let (made, mut random) = (Made::exact([250, 70], |_, _| 40.0), Random::new(4));
+        let mut stages = Stages::tiles(&made, noise(0.0));
+        for round in 0..50 {
+            let Pyramid { grids, .. } = &mut stages.run.pyramid;
+            // Regions of rectangles; few tiles of another one.
+            for at in 0..grids[0].len() {
+                let of_rectangle = [NONE, 3, 5][(at / 64 / 8 + at % 64 / 16) % 3];
+                grids[0].region[at] = if random.uniform() < 0.05 { random.whole(0, 5) as u32 } else { of_rectangle };
+            }
+            stages.run.pyramid.propagate_up(1 + round % 3);
+            let [tiles, coarser @ ..] = &stages.run.pyramid.grids;
+            let mut of_one_region = 0;
+            for grid in coarser {
+                let times = grid.side / SIDE;
+                for (row, column) in (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |column| (row, column))) {
+                    let mut own: Vec<u32> = (0..times * times)
+                        .map(|part| [times * column + part % times, times * row + part / times])
+                        .map(|[column, row]| tiles.region[row * tiles.columns + column])
+                        .collect();
+                    own.dedup();
+                    let expected = if let [only] = own[..] { only } else { NONE };
+                    assert_eq!(grid.region[row * grid.columns + column], expected, "{own:?}");
+                    of_one_region += usize::from(expected != NONE);
+                }
+            }
+            assert!(of_one_region > 0);
+        }
+    }
+
+    #[test]
+    fn the_parts_of_a_cell_that_have_pixels_get_its_region_and_the_others_none() {
+        let mut random = Random::new(5);
+        let made = Made::exact([COLUMNS, 64], |u, v| if (u / 4 + v / 4 * 7) % 5 == 0 { f64::NAN } else { 40.0 });
+        let stages = Stages::tiles(&made, noise(0.0));
+        let [tiles, cells, _] = &stages.run.pyramid.grids;
+        let regions: Vec<u32> = (0..cells.len()).map(|_| [NONE, 1, 2][random.whole(0, 2)]).collect();
+        // Of the cells' rows 2 to 6, as a band has them.
+        let mut to = vec![77; 8 * tiles.columns];
+        propagate_down(tiles, 4, &regions[2 * cells.columns..6 * cells.columns], &mut to);
+        for (at, &id) in to.iter().enumerate() {
+            let [column, row] = [at % tiles.columns, 4 + at / tiles.columns];
+            let is_there = (column + row * 7) % 5 != 0;
+            let expected = if is_there { regions[row / 2 * cells.columns + column / 2] } else { NONE };
+            assert_eq!(id, expected, "at {column}, {row}");
+        }
+    }
+
+    #[test]
+    fn cells_expect_the_noise_and_what_their_slope_makes_of_the_ray() {
+        let made = patchy(2);
+        let (ray, smooth) = (0.3, 0.02);
+        let model = noise(0.0).with_smooth(SensorNoise::Value { sigma: smooth }, 0.0).with_ray(ray);
+        let stages = Stages::tiles(&made, model);
+        for grid in &stages.run.pyramid.grids {
+            for at in (0..grid.len()).filter(|&at| grid.sums.n[at] > 0.0) {
+                let [a, b] = [&grid.sums.a, &grid.sums.b].map(|numbers| f64::from(numbers[at]));
+                let expected = [SIGMA * SIGMA + ray * ray * (a * a + b * b), smooth * smooth];
+                let found = [&grid.variance, &grid.smooth].map(|numbers| f64::from(numbers[at]));
+                (0..2)
+                    .for_each(|i| assert!((found[i] / expected[i] - 1.0).abs() < 1e-4, "{found:?}, not {expected:?}"));
+            }
+        }
+    }
+
+    #[test]
+    fn a_cell_is_as_rough_as_it_or_any_of_its_parts_is_for_the_noise() {
+        let smooth = 0.01;
+        for seed in 1..4 {
+            let stages = Stages::tiles(&patchy(seed), noise(smooth));
+            let mut rough_below: Vec<f64> = Vec::new();
+            for grid in &stages.run.pyramid.grids {
+                let is_tile = grid.side == SIDE;
+                let rough: Vec<f64> = (0..grid.len())
+                    .map(|at| {
+                        let cell = grid.cell(grid.place(at));
+                        let (n, variance, smooth) = (cell.n, cell.variance, cell.smooth);
+                        // Tiles share no smooth part beside their own plane.
+                        let bend = if is_tile { 0.0 } else { FLAT.smooth * n * smooth };
+                        let most = f64::from(limit(n as f32, THRESHOLD as f32)) * variance + bend;
+                        let own = cell.squares / (n - 3.0).max(1.0) * n / most;
+                        let misfit = f64::from(grid.sums.child_misfit[at]);
+                        let by_part = misfit / (FLAT.variances * variance + FLAT.smooth * n / 4.0 * smooth);
+                        let below = |part: usize| {
+                            let [column, row] = [at % grid.columns * 2 + part % 2, at / grid.columns * 2 + part / 2];
+                            rough_below[row * 2 * grid.columns + column]
+                        };
+                        let of_parts = if is_tile { 0.0 } else { (0..4).map(below).fold(0.0, f64::max) };
+                        [own, by_part, of_parts].into_iter().filter(|x| !x.is_nan()).fold(0.0, f64::max)
+                    })
+                    .collect();
+                for (at, &expected) in rough.iter().enumerate().filter(|(at, _)| grid.sums.n[*at] > 0.0) {
+                    let found = f64::from(grid.roughness[at]);
+                    let same = (found - expected).abs() <= 1e-4 * expected.max(1e-3) || found == expected;
+                    assert!(same, "{found} for {expected} at {at} of side {}", grid.side);
+                }
+                rough_below = rough;
+            }
+        }
+    }
+}

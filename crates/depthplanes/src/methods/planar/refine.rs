@@ -158,3 +158,107 @@ fn find_beside(region: &[u32], columns: usize, at: usize) -> [u8; LANES] {
     }
     beside
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::planar::layout::SIDE;
+    use crate::methods::planar::testing::{Made, SIGMA, Stages, bands, noise};
+
+    fn refine(stages: &mut Stages, threads: usize) {
+        let Stages { run, .. } = stages;
+        run.refiner.refine(&mut run.pyramid, &mut run.regions.all, threads);
+    }
+
+    /// A shallow crease down the middle: beyond it the planes part by a deviation for each two pixels.
+    fn crease() -> Made {
+        Made::noisy([128, 96], 3, |u, v| 40.0 + 0.02 * v - 0.5 * SIGMA * (u - 63.5).abs())
+    }
+
+    #[test]
+    fn tiles_that_were_given_to_the_wrong_side_of_a_crease_go_back() {
+        for (bands, threads) in [(bands(&[0, 6]), 1), (bands(&[0, 2, 3, 6]), 2)] {
+            let mut stages = Stages::tiles(&crease(), noise(0.0));
+            // Growth ran on over the crease here and there, on each side, and on a band's last row and first.
+            let is_off = |column: usize, row: usize| match row {
+                2 | 3 | 7 | 8 => column == 17,
+                11 | 12 | 20 => column == 14,
+                _ => false,
+            };
+            stages.divide(|column, row| u32::from((column >= 16) != is_off(column, row)));
+            stages.run.pyramid.bands = bands;
+            refine(&mut stages, threads);
+            for (row, column) in (0..24).flat_map(|row| (0..32).map(move |column| (row, column))) {
+                let id = stages.region_at([SIDE * column, SIDE * row]);
+                assert_eq!(id, u32::from(column >= 16), "tile {column}, {row}");
+            }
+            stages.check_sums();
+            // And the planes are those of the sides.
+            let mut right = Stages::tiles(&crease(), noise(0.0));
+            right.divide(|column, _| u32::from(column >= 16));
+            for (found, expected) in stages.all().iter().zip(right.all()) {
+                let [u, v] = expected.middle;
+                assert!(
+                    (found.at(u, v) - expected.at(u, v)).abs() < 1e-6 && (found.abc[0] - expected.abc[0]).abs() < 1e-6
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_moves_between_two_pieces_of_one_plane() {
+        for seed in 0..20 {
+            let made = Made::noisy([128, 96], seed, |u, v| 40.0 + 0.1 * u - 0.02 * v);
+            let mut stages = Stages::tiles(&made, noise(0.0));
+            stages.divide(|column, row| u32::from(column + row % 5 > 17));
+            let before = stages.grid().region.clone();
+            let sums = stages.all().iter().map(|region| region.sums).collect::<Vec<_>>();
+            refine(&mut stages, 1);
+            assert_eq!(stages.grid().region, before, "seed {seed}");
+            assert_eq!(stages.all().iter().map(|region| region.sums).collect::<Vec<_>>(), sums);
+        }
+    }
+
+    #[test]
+    fn a_tile_goes_to_no_plane_that_is_far_from_its_middle_and_to_none_that_is_not_beside_it() {
+        // Two steps of ten deviations: the tiles of the middle stay with the left, which explains them as badly as the
+        // right does, and those of the right, given to the left, have the right beside them in the last column alone.
+        let step = |u: f64| 10.0 * SIGMA * (f64::from(u >= 32.0) + f64::from(u >= 96.0));
+        let made = Made::noisy([128, 64], 4, |u, v| 40.0 + 0.02 * v + step(u));
+        let mut stages = Stages::tiles(&made, noise(0.0));
+        stages.divide(|column, _| u32::from(column >= 24));
+        let before = stages.grid().region.clone();
+        refine(&mut stages, 1);
+        assert_eq!(stages.grid().region, before);
+        // The same tiles of the third, one column given away: it is beside the third and goes back, no further one does.
+        stages.divide(|column, row| u32::from(column >= 24 + usize::from(row < 8)));
+        refine(&mut stages, 1);
+        assert_eq!(stages.grid().region, before);
+        stages.check_sums();
+    }
+
+    #[test]
+    fn a_tile_far_from_both_planes_stays_and_one_near_the_other_goes() {
+        for (level, expected) in [(9.0, 0), (13.0, 1)] {
+            // Two tiles of the left lie between the planes, nearer to the right's, which is 15 deviations higher.
+            let is_between = |u: f64, v: f64| (60.0..64.0).contains(&u) && (28.0..36.0).contains(&v);
+            let made = Made::noisy([128, 64], 4, |u, v| {
+                40.0 + SIGMA * if is_between(u, v) { level } else { 15.0 * f64::from(u >= 64.0) }
+            });
+            let mut stages = Stages::tiles(&made, noise(0.0));
+            stages.divide(|column, _| u32::from(column >= 16));
+            refine(&mut stages, 1);
+            assert_eq!([28, 32].map(|v| stages.region_at([60, v])), [expected; 2], "{level} deviations");
+            assert_eq!([24, 36].map(|v| stages.region_at([60, v])), [0; 2]);
+        }
+    }
+
+    #[test]
+    fn tiles_of_no_region_stay_without_one() {
+        let mut stages = Stages::tiles(&crease(), noise(0.0));
+        stages.divide(|column, row| if (6..9).contains(&row) && column > 13 { NONE } else { u32::from(column >= 16) });
+        let before = stages.grid().region.clone();
+        refine(&mut stages, 1);
+        assert_eq!(stages.grid().region, before);
+    }
+}

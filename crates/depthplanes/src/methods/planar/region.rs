@@ -279,3 +279,192 @@ pub(super) fn find_boxes(grid: &Grid, all: &[Region], boxes: &mut Vec<CellBox>) 
         each_run(ids, 0, |id, columns| boxes[id as usize].include([columns.start, columns.end - 1], row));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::planar::grid::{NONE, Place};
+    use crate::methods::planar::testing::{Made, SIGMA, Stages, THRESHOLD, noise, patchy, plane_of, planes};
+    use crate::util::random::Random;
+
+    /// A plane of 128 x 64 pixels, 40 in the middle.
+    fn slope(u: f64, v: f64) -> f64 {
+        40.0 + 0.05 * (u - 64.0) - 0.03 * (v - 32.0)
+    }
+
+    #[test]
+    fn a_region_that_takes_cells_in_and_gives_them_away_is_what_it_was() {
+        let stages = Stages::tiles(&patchy(3), noise(0.01));
+        let grid = stages.grid();
+        let cells: Vec<Cell> =
+            (0..grid.len()).filter(|&at| grid.pixels(at) > 0.0).map(|at| grid.cell(grid.place(at))).collect();
+        let mut region = Region::of(&cells[0]);
+        cells[1..9].iter().for_each(|cell| region.take(cell));
+        region.refit();
+        let before = region;
+        cells[20..40].iter().for_each(|cell| region.take(cell));
+        region.refit();
+        assert!(region.sums.n > before.sums.n && region.abc != before.abc);
+        cells[20..40].iter().rev().for_each(|cell| region.give(cell));
+        region.refit();
+        assert_eq!(region.sums.n, before.sums.n);
+        for (now, then) in [
+            (region.squares, before.squares),
+            (region.variance, before.variance),
+            (region.smooth, before.smooth),
+            (region.middle[0], before.middle[0]),
+            (region.middle[1], before.middle[1]),
+            (region.at(0.0, 0.0), before.at(0.0, 0.0)),
+            (region.at(100.0, 50.0), before.at(100.0, 50.0)),
+        ] {
+            assert!((now - then).abs() <= 1e-9 * then.abs().max(1.0), "{now}, before it was {then}");
+        }
+    }
+
+    #[test]
+    fn a_region_that_takes_another_in_has_the_plane_of_the_pixels_of_both() {
+        let made = patchy(9);
+        let mut stages = Stages::tiles(&made, noise(0.01));
+        stages.divide(|column, row| u32::from(row > 9 || column + row > 60));
+        let [mut one, other] = [stages.all()[0], stages.all()[1]];
+        one.absorb(&other);
+        let grid = stages.grid();
+        // Tiles that have no plane have no region.
+        let pixels = [made.pixels_of(grid, 0), made.pixels_of(grid, 1)].concat();
+        let ([a, b, c], squares) = plane_of(&pixels, [0.0; 2]);
+        assert_eq!(one.sums.n, pixels.len() as f64);
+        for [u, v] in [[0.0, 0.0], [149.0, 0.0], [0.0, 89.0], [149.0, 89.0]] {
+            let expected = a * u + b * v + c;
+            assert!((one.at(u, v) - expected).abs() < 1e-4, "{}, not {expected}", one.at(u, v));
+        }
+        assert!((one.squares / squares - 1.0).abs() < 1e-5, "{} squares, not {squares}", one.squares);
+        assert!((one.variance / (one.sums.n * SIGMA * SIGMA) - 1.0).abs() < 1e-5);
+        assert!((one.smooth / (one.sums.n * 1e-4) - 1.0).abs() < 1e-5);
+        let middle = [0, 1].map(|axis| pixels.iter().map(|pixel| pixel[axis]).sum::<f64>() / pixels.len() as f64);
+        (0..2).for_each(|axis| assert!((one.middle[axis] - middle[axis]).abs() < 1e-6));
+    }
+
+    #[test]
+    fn a_region_takes_a_cell_of_its_own_plane_in_and_refuses_one_that_is_off() {
+        // The right half is twelve deviations off.
+        let step = |u: f64, v: f64| slope(u, v) + if u >= 64.0 { 12.0 * SIGMA } else { 0.0 };
+        let made = Made::noisy([128, 64], 5, step);
+        let stages = Stages::tiles(&made, noise(0.0));
+        let grid = stages.grid();
+        // Of few tiles beside the step, which are fitted anew with each cell, and of many, whose plane is known.
+        for first in [4, 40] {
+            let mut region = Region::of(&grid.cell(Place::new(15, 4)));
+            (1..first).for_each(|at| region.take(&grid.cell(Place::new(15 - at % 8, 4 + at / 8))));
+            region.refit();
+            let before = region.sums;
+            assert!(!region.takes(&grid.cell(Place::new(16, 4)), true, THRESHOLD), "beyond the step, {first} tiles");
+            assert_eq!(region.sums, before);
+            for column in 0..8 {
+                let before = region.sums.n;
+                assert!(region.takes(&grid.cell(Place::new(column, 12)), true, THRESHOLD), "{column} of its own plane");
+                assert_eq!(region.sums.n, before + 16.0);
+            }
+            let before = region.sums;
+            for column in 16..32 {
+                let cell = grid.cell(Place::new(column, 8));
+                assert!(!region.takes(&cell, true, THRESHOLD), "{column} lies off the plane of {first}");
+            }
+            assert_eq!(region.sums, before);
+        }
+    }
+
+    #[test]
+    fn what_doubles_its_depth_within_four_pixels_is_seen_edge_on() {
+        let at = |share: f64, q: f64, infinity: f64| {
+            let made = Made::exact([16, 16], |u, v| {
+                q + share * (q - infinity) * (0.6 * (u as f64 - 7.5) + 0.8 * (v as f64 - 7.5))
+            });
+            let stages = Stages::tiles(&made, noise(0.0));
+            Region::of(&stages.run.pyramid.grids[2].cell(Place::new(0, 0)))
+        };
+        let rig = Measure::InverseDepth { slope: 0.01, offset: -0.3 }; // 30 is infinitely far
+        for (measure, infinity) in [(Measure::Disparity, 0.0), (Measure::Depth { metres: 1.0 }, 0.0), (rig, 30.0)] {
+            assert!(at(0.26, 40.0, infinity).is_edge_on(measure), "{measure:?}");
+            assert!(!at(0.24, 40.0, infinity).is_edge_on(measure), "{measure:?}");
+        }
+    }
+
+    #[test]
+    fn the_box_of_a_region_is_the_smallest_around_its_tiles() {
+        let mut random = Random::new(11);
+        let made = Made::noisy([250, 60], 5, slope);
+        let stages = Stages::tiles(&made, noise(0.0));
+        let mut boxes = Vec::new();
+        for _ in 0..30 {
+            let mut grid = Grid { columns: 64, rows: 16, ..Grid::new(4) };
+            let mut id = 0;
+            let mut next = |_| {
+                if random.uniform() < 0.3 {
+                    id = [NONE, 0, 1, 2, 3, 4][random.whole(0, 5)];
+                }
+                id
+            };
+            grid.region = (0..64 * 16).map(&mut next).collect();
+            let all = vec![Region::of(&stages.grid().cell(Place::new(0, 0))); 5];
+            find_boxes(&grid, &all, &mut boxes);
+            assert_eq!(boxes.len(), 5);
+            for (id, found) in (0..5).zip(&boxes) {
+                let own: Vec<[usize; 2]> =
+                    (0..64 * 16).filter(|&at| grid.region[at] == id).map(|at| [at % 64, at / 64]).collect();
+                let ends = |axis: usize| {
+                    let places = own.iter().map(|place| place[axis]);
+                    [places.clone().min().unwrap(), places.max().unwrap()]
+                };
+                let [[left, right], [top, bottom]] = [ends(0), ends(1)];
+                assert_eq!((found.first, found.last), ([left, top], [right, bottom]));
+                assert_eq!(found.area(), (right + 1 - left) * (bottom + 1 - top));
+            }
+        }
+    }
+
+    #[test]
+    fn a_box_widened_by_its_own_size_holds_as_much_on_each_side_and_ends_at_the_map() {
+        let grid = Grid { columns: 40, rows: 30, ..Grid::new(8) };
+        let wide = CellBox { first: [20, 24], last: [27, 31] }.widened(1, &grid);
+        assert_eq!((wide.first, wide.last), ([5, 7], [18, 20]));
+        let wide = CellBox { first: [2, 50], last: [31, 57] }.widened(1, &grid);
+        assert_eq!((wide.first, wide.last), ([0, 20], [31, 29]));
+    }
+
+    #[test]
+    fn a_deviation_in_a_region_that_bows_is_its_own_root_mean_square() {
+        let bowl = |u: f64, v: f64| slope(u, v) + 5.0 * SIGMA * ((u - 64.0) / 40.0).powi(2);
+        for (bends, times) in [(false, 1.0..1.01), (true, 1.5..20.0)] {
+            let made = Made::noisy([128, 64], 6, |u, v| if bends { bowl(u, v) } else { slope(u, v) });
+            let mut stages = Stages::tiles(&made, noise(0.01));
+            stages.divide(|_, _| 0);
+            let region = &stages.all()[0];
+            let planes = planes(stages.all(), &stages.noise);
+            let expected = SIGMA * SIGMA + 1e-4;
+            let rms = (plane_of(&made.pixels(0..128, 0..64), [0.0; 2]).1 / (128.0 * 64.0)).sqrt();
+            let share = planes.variance(region, 40.0) / expected;
+            assert!(times.contains(&share), "{share} times the noise");
+            assert!(!bends || (planes.variance(region, 40.0).sqrt() / rms - 1.0).abs() < 1e-3);
+            let most = planes.inlier_threshold_squared(region, 40.0);
+            assert!((most / (THRESHOLD * THRESHOLD * planes.variance(region, 40.0)) - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn labels_are_numbers_from_1_on_and_curved_regions_have_one_of_their_own() {
+        let made = Made::noisy([128, 64], 7, slope);
+        let mut stages = Stages::tiles(&made, noise(0.0));
+        stages.divide(|column, _| u32::from(column > 15));
+        stages.run.regions.all[1].is_curved = true;
+        let of_planes = planes(stages.all(), &stages.noise);
+        assert_eq!([0, 1].map(|id| of_planes.label(id)), [1, BENT]);
+        let of_curved = Planes { curved: true, ..of_planes };
+        assert_eq!([0, 1].map(|id| of_curved.label(id)), [0, 2]);
+        // An image of them has neither those of no region nor the curved ones.
+        let AffineMap { stride, rows, .. } = stages.run.affine;
+        let image: Vec<u16> = (0..stride * rows).map(|at| [0, 1, BENT, 3][at % 4]).collect();
+        let view = of_image(&image, &stages.run.affine).unwrap();
+        assert_eq!((view.width(), view.height()), (128, 64));
+        assert_eq!(view.valid_pixels(), 64 * 64);
+    }
+}

@@ -99,3 +99,52 @@ pub(super) const GENTLE_LARGER: f64 = 2.0;
 pub(super) fn limit(n: f32, inlier_threshold: f32) -> f32 {
     1.4 * (n + inlier_threshold * (2.0 * n).sqrt())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::planar::testing::{Made, SIGMA, Stages, THRESHOLD, noise};
+    use crate::util::random::Random;
+
+    #[test]
+    fn squares_of_white_noise_are_above_the_limit_as_rarely_as_chi_squared_says_and_of_twice_the_noise_often() {
+        let mut random = Random::new(3);
+        for (n, twice) in [(16, 0.5), (64, 0.99), (256, 1.0)] {
+            let mut above = [0; 3];
+            let rounds = 4000;
+            for _ in 0..rounds {
+                let squares: f64 = (0..n).map(|_| random.gaussian().powi(2)).sum();
+                let limit = |threshold: f32| f64::from(limit(n as f32, threshold));
+                // Without the allowance for a noise that is known to a fifth it is the mean and one deviation more.
+                let more = [squares > limit(1.0) / 1.4, squares > limit(4.0), 4.0 * squares > limit(4.0)];
+                (0..3).for_each(|i| above[i] += u32::from(more[i]));
+            }
+            let above = above.map(|count| f64::from(count) / f64::from(rounds));
+            assert!((0.13..0.18).contains(&above[0]), "{} above one deviation, {n} pixels", above[0]);
+            assert!(above[1] == 0.0 && above[2] >= twice, "{above:?}, {n} pixels");
+        }
+    }
+
+    #[test]
+    fn flat_cells_of_white_noise_are_rarely_rough_and_those_of_half_as_much_again_mostly_are_if_large() {
+        let rough = |times: f64, level: usize| {
+            let mut random = Random::new(4);
+            let made = Made::exact([512, 256], |u, _| 40.0 + 0.05 * u as f64 + times * SIGMA * random.gaussian());
+            let grid = &Stages::tiles(&made, noise(0.0)).run.pyramid.grids[level];
+            grid.roughness.iter().filter(|&&roughness| roughness > 1.0).count() as f64 / grid.len() as f64
+        };
+        // Tiles: once in a thousand. Larger cells have several parts, each of which the plane may suit less by chance.
+        let shares = [0, 1, 2].map(|level| rough(1.0, level));
+        assert!(shares[0] < 1e-3 && shares[1] < 0.1 && shares[2] < 0.3, "{shares:?}");
+        assert!(rough(1.5, 2) > 0.5 && rough(3.0, 0) > 0.95, "{} {}", rough(1.5, 2), rough(3.0, 0));
+        const { assert!(THRESHOLD == 4.0) };
+    }
+
+    #[test]
+    fn an_allowance_is_of_a_pixels_variance_once_and_of_the_smooth_part_for_each_pixel() {
+        let allowance = Allowance { variances: 3.0, smooth: 2.0 };
+        assert_eq!(allowance.of(16.0, 0.5, 0.25), 3.0 * 0.5 + 2.0 * 16.0 * 0.25);
+        // A cell joins what is known better than a cell's parts join each other.
+        const { assert!(FLAT.variances < JOIN.variances && FLAT.smooth < JOIN.smooth) };
+    }
+}

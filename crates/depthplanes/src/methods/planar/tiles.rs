@@ -272,3 +272,110 @@ fn plane([n, u, v, uu, uv, vv]: [f32; 6], [q, uq, vq]: [f32; 3]) -> Fit {
     // Three pixels that are not on a line span a determinant of 1/3 and more.
     Fit { abc: [a, b, q * per_n - a * mu - b * mv], is_determined: det > 0.1 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::planar::layout::LEVELS;
+    use crate::methods::planar::testing::{
+        Made, Stages, are_on_a_line, noise, patchy, pixels_that_count, plane_of, squares_about,
+    };
+    use crate::util::random::Random;
+
+    /// Fails unless the cells of all sizes have the sums, the planes and the squares of their pixels.
+    fn check(made: &Made) {
+        let stages = Stages::tiles(made, noise(0.0));
+        for grid in &stages.run.pyramid.grids {
+            let [mut with, mut without] = [0; 2];
+            for at in 0..grid.len() {
+                let place = [at % grid.columns, at / grid.columns];
+                let [u0, v0] = place.map(|place| place as f64 * grid.side as f64 + (grid.side - 1) as f64 / 2.0);
+                let pixels = pixels_that_count(made, grid.side, place);
+                let Sums { n, u, v, uu, uv, vv, a, b, c, squares, child_misfit } = &grid.sums;
+                let number = |numbers: &[f32]| f64::from(numbers[at]);
+                if pixels.is_empty() {
+                    without += 1;
+                    assert_eq!([n, u, v, uu, uv, vv, a, b, c].map(|numbers| number(numbers)), [0.0; 9]);
+                    assert!(grid.side > SIDE || squares[at] == f32::INFINITY);
+                    continue;
+                }
+                with += 1;
+                let sum = |of: fn(f64, f64) -> f64| pixels.iter().map(|[u, v, _]| of(u - u0, v - v0)).sum::<f64>();
+                let places = [sum(|_, _| 1.0), sum(|u, _| u), sum(|_, v| v)];
+                let products = [sum(|u, _| u * u), sum(|u, v| u * v), sum(|_, v| v * v)];
+                assert_eq!([n, u, v].map(|numbers| number(numbers)), places, "at {place:?} of side {}", grid.side);
+                assert_eq!([uu, uv, vv].map(|numbers| number(numbers)), products, "at {place:?} of {}", grid.side);
+                let (plane, left) = plane_of(&pixels, [u0, v0]);
+                let found = [a, b, c].map(|numbers| number(numbers));
+                // A plane's error is single precision's of q, more where few pixels tell.
+                let off: f64 = pixels
+                    .iter()
+                    .map(|[u, v, _]| (0..3).map(|i| (found[i] - plane[i]) * [u - u0, v - v0, 1.0][i]).sum::<f64>())
+                    .fold(0.0, |most, off| most.max(off.abs()));
+                assert!(off < 2e-4, "{found:?} for {plane:?} of {} pixels, side {}", pixels.len(), grid.side);
+                let tolerance = 1e-3 * left + 1e-6 * pixels.len() as f64;
+                assert!((number(squares) - left).abs() <= tolerance, "{} squares for {left}", number(squares));
+                if grid.side > SIDE {
+                    let misfits = (0..4).map(|part| {
+                        let part = [2 * place[0] + part % 2, 2 * place[1] + part / 2];
+                        let pixels = pixels_that_count(made, grid.side / 2, part);
+                        if pixels.is_empty() {
+                            0.0
+                        } else {
+                            squares_about(&pixels, plane, [u0, v0]) - plane_of(&pixels, [u0, v0]).1
+                        }
+                    });
+                    let most = misfits.fold(0.0, f64::max);
+                    let found = number(child_misfit);
+                    assert!((found - most).abs() <= 2e-3 * left + 1e-5 * pixels.len() as f64, "{found} for {most}");
+                }
+            }
+            assert!(with > 0 && without > 0, "{with}, {without} of side {}", grid.side);
+        }
+        assert_eq!(stages.run.pyramid.grids.len(), LEVELS);
+    }
+
+    #[test]
+    fn cells_of_every_size_have_the_sums_and_the_plane_of_their_pixels() {
+        (1..5).for_each(|seed| check(&patchy(seed)));
+    }
+
+    #[test]
+    fn tiles_of_lone_pixels_and_of_pixels_on_a_line_have_no_plane_and_every_other_has_one() {
+        let mut random = Random::new(3);
+        // Each tile has few pixels, on a row, a column, a diagonal or anywhere.
+        let shapes: Vec<[bool; 16]> = (0..32 * 8)
+            .map(|_| {
+                let (kind, place) = (random.whole(0, 7), random.whole(0, 3));
+                std::array::from_fn(|at| {
+                    let [u, v] = [at % 4, at / 4];
+                    let here = [u == place, v == place, u == v, 2 * u == v].get(kind).copied();
+                    random.uniform()
+                        < if here == Some(true) {
+                            0.8
+                        } else if here.is_none() {
+                            0.2
+                        } else {
+                            0.0
+                        }
+                })
+            })
+            .collect();
+        let made = Made::exact([128, 32], |u, v| {
+            let is_there = shapes[v / 4 * 32 + u / 4][v % 4 * 4 + u % 4];
+            if is_there { 30.0 + random.uniform() } else { f64::NAN }
+        });
+        let stages = Stages::tiles(&made, noise(0.0));
+        let grid = stages.grid();
+        let [mut with, mut without] = [0; 2];
+        for (row, column) in (0..8).flat_map(|row| (0..32).map(move |column| (row, column))) {
+            let (at, pixels) =
+                (row * grid.columns + column, made.pixels(4 * column..4 * column + 4, 4 * row..4 * row + 4));
+            let expected = if are_on_a_line(&pixels) { 0 } else { pixels.len() };
+            assert_eq!(grid.sums.n[at] as usize, expected, "{pixels:?}");
+            assert_eq!(grid.sums.squares[at].is_finite(), expected > 0, "{pixels:?}");
+            [with, without] = [with + usize::from(expected > 0), without + usize::from(expected == 0)];
+        }
+        assert!(with > 20 && without > 20, "{with} with a plane, {without} without");
+    }
+}

@@ -397,3 +397,121 @@ pub(super) fn label_of(run: &Runner, out: &Detection, id: u32) -> u16 {
     let best = (0..counts.len()).rev().max_by_key(|&label| counts[label]).filter(|&label| counts[label] > 0);
     best.unwrap_or(0) as u16
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::planar::testing::{Made, SENSOR, SIGMA, Stages, noise, patchy};
+
+    #[test]
+    fn the_cells_that_a_pixel_lies_in_are_told_with_their_own_pixels_the_largest_first() {
+        let made = patchy(4);
+        let stages = Stages::grown(&made, noise(0.0));
+        for at in [[0, 0], [149, 89], [77, 33], [18, 60], [120, 5]] {
+            let mut trace = Trace::new(at, SENSOR);
+            trace.look(Checkpoint::Grown, &stages.run, &stages.noise);
+            let q = made.q[at[1] * made.width + at[0]];
+            assert!(trace.q == f64::from(q) || (trace.q.is_nan() && q.is_nan()));
+            let cells: Vec<&Finding> =
+                trace.findings.iter().filter(|finding| finding.subject.starts_with("cell")).collect();
+            assert_eq!(cells.len(), stages.run.pyramid.grids.len());
+            for (finding, grid) in cells.iter().zip(stages.run.pyramid.grids.iter().rev()) {
+                let [u, v] = at.map(|place| place / grid.side * grid.side);
+                let subject = format!(
+                    "cell of {0} x {0}, columns {u}..{1}, rows {v}..{2}",
+                    grid.side,
+                    u + grid.side - 1,
+                    v + grid.side - 1
+                );
+                let own = f64::from(grid.pixels(trace.cell(grid)));
+                let place = [u / grid.side, v / grid.side];
+                let expected = crate::methods::planar::testing::pixels_that_count(&made, grid.side, place).len() as f64;
+                assert_eq!((&finding.subject, finding.quantities[0].value, own), (&subject, expected, expected));
+                let starts = finding.outcome == "flat, may start a region";
+                let is_flat = grid.roughness[trace.cell(grid)] <= 1.0;
+                assert_eq!(starts, is_flat && finding.quantities[0].limit.unwrap().holds(own), "{finding:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_planes_that_a_pixel_is_held_against_are_told_by_how_far_off_it_is_the_nearest_first() {
+        let made = Made::noisy([128, 64], 5, |u, v| 40.0 + 0.02 * v + if u < 64.0 { 0.0 } else { 20.0 * SIGMA });
+        let mut stages = Stages::tiles(&made, noise(0.0));
+        stages.divide(|column, _| u32::from(column >= 16));
+        let run = &mut stages.run;
+        run.image = (0..run.affine.q.len()).map(|at| 1 + u16::from(at % run.affine.stride >= 64)).collect();
+        for (u, expected) in [(10, &[0][..]), (62, &[0, 1]), (66, &[1, 0]), (120, &[1])] {
+            let mut trace = Trace::new([u, 20], SENSOR);
+            trace.look(Checkpoint::Assigned, &stages.run, &stages.noise);
+            assert_eq!(trace.against.iter().map(|against| against.id).collect::<Vec<_>>(), expected);
+            for against in &trace.against {
+                let region = &stages.all()[against.id as usize];
+                let q = f64::from(made.q[20 * 128 + u]);
+                let off = (q - region.at(u as f64, 20.0)).abs() / (SIGMA * region.excess().max(1.0).sqrt());
+                assert!((against.off - off).abs() < 1e-3 && against.pixels == region.sums.n, "{against:?}, not {off}");
+            }
+            assert_eq!(u32::from(trace.assigned), expected[0] + 1);
+            let times = if expected.len() == 1 { 2.0 } else { 1.0 };
+            assert_eq!(trace.most, times * stages.run.params.inlier_threshold);
+        }
+    }
+
+    #[test]
+    fn the_fate_of_a_region_is_why_it_gives_no_plane() {
+        let made = Made::noisy([128, 64], 5, |u, v| 40.0 + 0.02 * v + if u < 64.0 { 0.0 } else { 20.0 * SIGMA });
+        let fate = |evidence: Option<Evidence>, is_redundant: bool| {
+            let mut stages = Stages::tiles(&made, noise(0.0));
+            stages.divide(|column, row| if row > 12 { NONE } else { u32::from(column >= 16) });
+            stages.list_edges();
+            stages.judge();
+            stages.run.curvature.evidence[1] = evidence;
+            stages.run.redundancy.is_redundant[1] = is_redundant;
+            let mut trace = Trace::new([100, 20], SENSOR);
+            trace.look(Checkpoint::Judged, &stages.run, &stages.noise);
+            let refuses = trace.findings.iter().any(|finding| finding.refuses);
+            assert_eq!(refuses, evidence.is_some());
+            let mut none = Trace::new([100, 60], SENSOR);
+            none.look(Checkpoint::Judged, &stages.run, &stages.noise);
+            assert_eq!((none.fate, none.findings.len()), (Fate::None, 0));
+            trace.fate
+        };
+        assert_eq!(fate(None, false), Fate::Kept);
+        assert_eq!(fate(Some(Evidence::Bow), false), Fate::Curved);
+        assert_eq!(fate(Some(Evidence::Continuity(0)), false), Fate::Curved);
+        assert_eq!(fate(None, true), Fate::Redundant);
+    }
+
+    #[test]
+    fn the_label_of_a_region_is_the_one_that_most_of_its_pixels_have() {
+        let mut stages = Stages::tiles(&Made::exact([128, 16], |u, _| 40.0 + u as f64), noise(0.0));
+        stages.divide(|column, _| column as u32 / 12);
+        let Stages { run, .. } = &mut stages;
+        let stride = run.affine.stride;
+        // Regions 0 and 1 have pixels, region 2 none.
+        run.image = (0..run.affine.q.len()).map(|at| 1 + u16::from(at % stride >= 50)).collect();
+        run.contacts.join([].into_iter(), &mut run.regions.all, &mut run.image, 1);
+        let label = |at: usize| match at % 128 {
+            0..20 => 3,
+            20..28 => 1,
+            28..50 => 0,
+            50..100 => 2,
+            _ => 1,
+        };
+        let plane = |label: u16| {
+            crate::detection::Plane::new(
+                label,
+                1,
+                crate::detection::PixelBox { u_min: 0, v_min: 0, u_max: 0, v_max: 0 },
+            )
+        };
+        let out = Detection {
+            width: 128,
+            height: 16,
+            labels: (0..128 * 16).map(label).collect(),
+            planes: (1..4).map(plane).collect(),
+            ..Detection::default()
+        };
+        assert_eq!([0, 1, 2].map(|id| label_of(run, &out, id)), [3, 2, 0]);
+    }
+}
