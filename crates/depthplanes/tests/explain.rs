@@ -55,6 +55,9 @@ fn every_suggestion_works_and_every_label_is_that_of_the_detection() {
             for at in pixels(&found, &mut random, count) {
                 let why = asked_of.explain(frame.view(), at).unwrap();
                 let label = found.labels[at[1] * found.width + at[0]];
+                if let Verdict::Off { off, most, .. } = why.verdict {
+                    assert!(off > most, "{spec} {at:?}: {why:?}");
+                }
                 match why.verdict {
                     Verdict::Plane { label: told, pixels, .. } => {
                         assert_eq!((told, pixels), (label, found.planes[usize::from(label) - 1].pixel_count));

@@ -8,7 +8,7 @@ use super::parameter::{Param, ParamKind};
 use super::records::Records;
 use crate::components::selection::Selection;
 use crate::components::{ConnectedComponents, Connectivity};
-use crate::detection::Detection;
+use crate::detection::{Curved, CurvedRegion, Detection};
 use crate::error::Result;
 use crate::map::{DepthView, Pixel};
 use crate::noise::NoiseModel;
@@ -104,5 +104,68 @@ impl Extraction {
         (out.valid_pixels, out.filled_pixels) = (valid_pixels, 0);
         job.done("label");
         Ok(())
+    }
+
+    /// The curved regions of a region image (0 = none): connected pieces of one region with more than `min` pixels. `old`:
+    /// memory to reuse.
+    ///
+    /// # Errors
+    /// [`crate::Error::TooManyPlanes`] if they are more than labels can name.
+    pub(crate) fn extract_curved<T: Pixel>(
+        &mut self,
+        map: &DepthView<'_, T>,
+        ids: &DepthView<'_, u16>,
+        min: u32,
+        job: &Job<'_>,
+        old: Option<Curved>,
+    ) -> Result<Curved> {
+        let Extraction { grouper, selection, describer } = self;
+        let groups = grouper.group(ids, &Connectivity::new(ids.validity(), 0.0)?, job.threads);
+        selection.select(groups, min)?;
+        describer.tally(map, selection.runs(groups), 0, &job.sensor, job.threads);
+        let Curved { mut labels, mut regions } = old.unwrap_or_default();
+        selection.paint(groups, &mut labels);
+        regions.clear();
+        regions.extend((1..).zip(describer.tallies()).map(|(label, tally)| CurvedRegion {
+            label,
+            pixel_count: tally.pixel_count,
+            bounding_box: tally.bounding_box,
+            centroid: tally.centroid,
+        }));
+        Ok(Curved { labels, regions })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sensor::Sensor;
+
+    #[test]
+    fn curved_regions_are_the_connected_pieces_of_more_than_min_pixels() {
+        // Number 2 in two pieces, of 12 pixels and of 4; number 1 of 6.
+        let ids: Vec<u16> =
+            [[0, 2, 2, 2, 2, 0, 2, 2], [0, 2, 2, 2, 2, 0, 2, 2], [0, 2, 2, 2, 2, 0, 0, 0], [1, 1, 1, 1, 1, 1, 0, 0]]
+                .concat();
+        let pixels = [40.0f32; 32];
+        let map = DepthView::new(&pixels, 8, 4).unwrap();
+        let view = DepthView::new(&ids, 8, 4).unwrap().valid_range(1, u16::MAX).unwrap();
+        let job = Job { sensor: Sensor::default(), threads: 1, curved: true, joiner: None, observer: &mut |_| () };
+        let mut old = None;
+        for (min, expected) in [(0, &[12, 6, 4][..]), (4, &[12, 6]), (5, &[12, 6]), (6, &[12]), (12, &[])] {
+            let found = Extraction::default().extract_curved(&map, &view, min, &job, old).unwrap();
+            assert_eq!(
+                found.regions.iter().map(|region| region.pixel_count).collect::<Vec<_>>(),
+                expected,
+                "min {min}"
+            );
+            for region in &found.regions {
+                assert_eq!(found.labels.iter().filter(|&&label| label == region.label).count(), region.pixel_count);
+            }
+            if let Some(first) = found.regions.first() {
+                assert_eq!((first.centroid, first.bounding_box.u_max), ([2.5, 1.0], 4));
+            }
+            old = Some(found);
+        }
     }
 }

@@ -110,11 +110,6 @@ impl NoiseModel {
         self.smooth_sigma(q).powi(2) + self.smooth_ray * self.smooth_ray * slope
     }
 
-    /// This model with a smooth part `factor` times as large.
-    pub(crate) fn smoother(self, factor: f64) -> Self {
-        NoiseModel { smooth: self.smooth.times(factor), smooth_ray: factor * self.smooth_ray, ..self }
-    }
-
     /// Variance of a pixel near q without the smooth part; rounding as if noise dithered it.
     pub(crate) fn own_variance(&self, q: f64) -> f64 {
         let (sensor, rounding) = (self.sensor_sigma(q).powi(2), self.step(q).powi(2) / 12.0);

@@ -172,7 +172,7 @@ impl PlaneStatistics {
         }
         let squares = self.tallies.iter().filter_map(|tally| tally.known(sensor)?.smooth_squares(noise));
         let [shown, expected] = squares.fold([0.0; 2], |sum, squares| [0, 1].map(|i| sum[i] + squares[i]));
-        if expected > 0.0 { noise.smoother((shown.max(0.0) / expected).sqrt()) } else { *noise }
+        if expected > 0.0 { noise.with_smooth_times((shown.max(0.0) / expected).sqrt()) } else { *noise }
     }
 
     /// Sums what the records need of every pixel's depth; `add` adds those of a run and its plane.

@@ -67,7 +67,7 @@ impl CreaseRule {
         self.a * DU[at] + self.b * DV[at] + self.c
     }
 
-    /// Whether the block's pixels belie the line: positive if they all should go to the first, negative if to the second.
+    /// Whether the block's pixels contradict the line: positive if they all should go to the first, negative if to the second.
     #[inline(always)]
     fn rejected(&self, [one, other]: [&Pixels<f32>; 2]) -> f32 {
         // What it adds to the squares if one of them gets all.

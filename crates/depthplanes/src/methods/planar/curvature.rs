@@ -222,12 +222,6 @@ const MEAN_PIXELS: f32 = 8.0;
 /// Valid pixels of a tile over which a surface goes on: a gap takes a column of four from one tile, or from two.
 const WHOLE_PIXELS: f32 = 13.0;
 
-/// n of a region's plane `n . point = 1`.
-fn normal_of(rays: &Rays, region: &Region) -> Vec3 {
-    let [a, b, _] = region.abc;
-    rays.inverse([a, b], |u, v| region.at(u, v))
-}
-
 /// Whether two planes differ by a small angle.
 fn is_gentle(a: Vec3, b: Vec3) -> bool {
     let (both, squares) = (dot(a, b), dot(a, a) * dot(b, b));
@@ -246,7 +240,7 @@ impl Border<'_> {
     /// Whether beyond much of the border the surface goes on and turns gently.
     pub(super) fn turns(&self, around: &CellBox) -> bool {
         let grid = self.grid;
-        let normal = normal_of(self.rays, &self.all[self.id as usize]);
+        let normal = self.all[self.id as usize].inverse(self.rays);
         let [mut places, mut gentle] = [0.0; 2];
         for row in around.first[1]..=around.last[1] {
             for column in around.first[0]..=around.last[0] {
@@ -306,7 +300,7 @@ impl Border<'_> {
             // Growth may have crossed the edge; the planes themselves say where it is.
             let inner = [0, 1].map(|i| own[i] - 0.5 * side * step[i]);
             let [before, behind] = [inner, [u, v]].map(|[u, v]| other.at(u, v) - region.at(u, v));
-            return before * behind < 0.0 && is_gentle(normal, normal_of(rays, other));
+            return before * behind < 0.0 && is_gentle(normal, other.inverse(rays));
         }
         let edge = [0, 1].map(|i| own[i] + 0.5 * side * step[i]);
         let from = rays.at(edge, region.at(edge[0], edge[1]));

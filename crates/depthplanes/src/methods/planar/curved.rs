@@ -24,6 +24,7 @@ use crate::util::memory::reserve_to;
 use crate::util::parallel::{Numbered, map_reduce};
 use crate::util::runs::each_run;
 use crate::util::switches::is_on;
+use crate::util::union_find::{find, unite};
 
 /// Fewest cells that a quadratic, six numbers, is fitted to.
 const QUADRATIC_CELLS: f64 = 12.0;
@@ -35,9 +36,10 @@ const STEP_DEVIATIONS: f64 = 6.0;
 const LOOK_AROUND_PIXELS: f64 = 1000.0;
 /// Pixels from which on a region is no facet of a mesh or a ball beside others of them, unless it bows itself.
 const NO_FACET_PIXELS: f64 = 4000.0;
-/// Share of the squares about a plane that a quadratic may leave around a small region: half of what it leaves of
-/// a surface that turns off at a crease.
-const CREASE_SHARE: f64 = 0.03;
+/// Share of the squares about a plane that a quadratic may leave around a small region: half of what it leaves of a roof.
+/// Of `|x|` on -1..1 the best plane leaves 1/6 and the best quadratic 1/96, which is 1/16 of it. Of six columns of means
+/// over tiles it leaves less, 1/40: the smallest roofs may pass for curved.
+const ROOF_SHARE: f64 = 0.03;
 /// Deviations of a pixel from a small region's plane up to which a tile around it is looked at: a quadratic through a roof
 /// that rises d to each side is 0.07 d off, root mean square.
 const NEAR_DEVIATIONS: f64 = 20.0;
@@ -118,17 +120,17 @@ impl CurvatureTest {
             is_on("bow") && !is_redundant && bows.is_bowed(id, &regions.all[id as usize], rays, TURN)
         };
         evidence.extend((0..).zip(is_redundant).map(|region| is_bowed(region).then_some(Evidence::Bow)));
-        let scene = Context { pyramid, all: &regions.all, noise, is_redundant, boxes, bows };
+        let context = Context { pyramid, all: &regions.all, noise, is_redundant, boxes, bows };
         if is_on("joint") {
-            scene.find_joints(edges, joints, evidence, threads);
+            context.find_joints(edges, joints, evidence, threads);
         }
-        scene.measure_folds(edges, rays, folds);
+        context.measure_folds(edges, rays, folds);
         let look_around = |part: Numbered<'_, Option<Evidence>>| {
             for (id, sign) in (part.first..).zip(part.all).filter(|(id, sign)| sign.is_none() && !is_redundant[*id]) {
-                let (region, number) = (&scene.all[id], id as u32);
+                let (region, number) = (&context.all[id], id as u32);
                 let is_small = region.sums.n < NO_FACET_PIXELS;
-                let border = Border { grid: &pyramid.grids[0], all: scene.all, rays, id: number };
-                if is_on("surroundings") && region.sums.n < LOOK_AROUND_PIXELS && scene.surroundings(number).bends() {
+                let border = Border { grid: &pyramid.grids[0], all: context.all, rays, id: number };
+                if is_on("surroundings") && region.sums.n < LOOK_AROUND_PIXELS && context.surroundings(number).bends() {
                     *sign = Some(Evidence::Surroundings);
                 } else if is_on("turns") && is_small && border.turns(&boxes[id]) {
                     *sign = Some(Evidence::Turns);
@@ -163,7 +165,7 @@ impl Fold {
 
 /// Whether two planes differ by no more than [`GENTLE`] degrees, and by more than the pieces of one that bows.
 fn turn_gently(a: &Region, b: &Region, rays: &Rays) -> bool {
-    let [m, n] = [a, b].map(|region| rays.inverse([region.abc[0], region.abc[1]], |u, v| region.at(u, v)));
+    let [m, n] = [a, b].map(|region| region.inverse(rays));
     let (both, squares) = (dot(m, n), dot(m, m) * dot(n, n));
     let least = |angle: f64| angle.to_radians().cos().powi(2) * squares;
     both > 0.0 && (least(GENTLE)..least(BOWED_ANGLE)).contains(&(both * both))
@@ -341,9 +343,29 @@ impl Continuity {
         let both = self.sums[0].merge(&self.sums[1]);
         let missed: f64 = self.missed.iter().sum();
         let by_plane = both.left_by(&both.solve::<3>()) - both.cells;
-        let is_bent = self.is_close(JOINT_MISS) || (self.is_close(LOOSE_MISS) && missed <= CREASE_SHARE * by_plane);
+        let is_bent = self.is_close(JOINT_MISS) || (self.is_close(LOOSE_MISS) && missed <= ROOF_SHARE * by_plane);
         self.has_enough() && self.is_better(by_plane, LOOSE_GAIN) && is_bent
     }
+}
+
+/// Gives the facets of one surface one number in a region image. `parents`: memory to work in.
+pub(super) fn join_facets(
+    all: &[Region],
+    edges: &[Edge],
+    noise: &NoiseModel,
+    parents: &mut Vec<u16>,
+    image: &mut [u16],
+    most_regions: usize,
+) {
+    reserve_to(parents, most_regions);
+    parents.extend((0..all.len()).map(|id| id as u16));
+    for edge in edges {
+        if edge.ids.iter().all(|&id| all[id as usize].is_curved) && !are_apart(all, noise, edge) {
+            let [a, b] = edge.ids.map(|id| id as u16);
+            unite(parents, a, b);
+        }
+    }
+    image.iter_mut().filter(|id| **id > 0).for_each(|id| *id = find(parents, *id - 1) + 1);
 }
 
 #[cfg(test)]
@@ -520,5 +542,39 @@ mod tests {
             });
             assert_eq!(turn_gently(&one, &other, &camera), expected, "{degrees} degrees");
         }
+    }
+
+    /// The number of each of some facets, four tiles wide each, of which some are curved, with steps of so many deviations
+    /// between them.
+    fn numbers(curved: &[bool], steps: &[f64], gap_after: Option<usize>) -> Vec<u16> {
+        let level = |u: f64| steps.iter().take(u as usize / 16).sum::<f64>() * SIGMA;
+        let made = Made::exact([16 * curved.len(), 32], |u, v| 40.0 + 0.01 * v as f64 + level(u as f64));
+        let mut stages = Stages::tiles(&made, noise(0.0));
+        // A gap of two tiles is none's.
+        stages.divide(|column, _| {
+            let is_gap = gap_after.is_some_and(|facet| [4 * facet + 3, 4 * facet + 2].contains(&column));
+            if is_gap { NONE } else { column as u32 / 4 }
+        });
+        stages.list_edges();
+        stages.run.regions.all.iter_mut().zip(curved).for_each(|(region, &is_curved)| region.is_curved = is_curved);
+        let mut image: Vec<u16> = (0..=curved.len() as u16).collect();
+        let mut parents = Vec::new();
+        join_facets(stages.all(), &stages.run.merger.edges, &stages.noise, &mut parents, &mut image, 100);
+        assert_eq!(image[0], 0, "no region stays none");
+        image[1..].to_vec()
+    }
+
+    #[test]
+    fn facets_side_by_side_get_one_number_unless_there_is_a_step_between_them() {
+        assert_eq!(numbers(&[true; 4], &[0.0; 3], None), [1, 1, 1, 1]);
+        assert_eq!(numbers(&[true; 4], &[3.0, -3.0, 3.0], None), [1, 1, 1, 1]);
+        assert_eq!(numbers(&[true; 4], &[0.0, 10.0, 0.0], None), [1, 1, 3, 3]);
+        assert_eq!(numbers(&[true; 4], &[-10.0, 0.0, 10.0], None), [1, 2, 2, 4]);
+    }
+
+    #[test]
+    fn facets_that_a_plane_or_nothing_parts_are_two_surfaces() {
+        assert_eq!(numbers(&[true, true, false, true], &[0.0; 3], None), [1, 1, 3, 4]);
+        assert_eq!(numbers(&[true; 4], &[0.0; 3], Some(1)), [1, 1, 3, 3]);
     }
 }

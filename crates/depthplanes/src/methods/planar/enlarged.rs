@@ -5,7 +5,6 @@
 //! fitted there, so that `min`, areas and places are those of the map that was given. Repeated pixels say no more
 //! than one: errors of planes are those of the source's pixels.
 
-use super::curved_regions::curved_of;
 use super::explain::explain;
 use super::parameters::Planar;
 use super::pipeline::Runner;
@@ -69,7 +68,7 @@ impl Source {
         let old = out.curved.take();
         if let Some(curved) = &found.curved {
             let labels = enlarge(&curved.labels, &enlargement, map, image)?;
-            out.curved = Some(curved_of(extraction, map, &labels, min, job, old)?);
+            out.curved = Some(extraction.extract_curved(map, &labels, min, job, old)?);
             job.done("label");
         }
         Ok(())
@@ -318,14 +317,14 @@ mod tests {
         let camera = Intrinsics { fx: 500.0, fy: 480.0, cx: 319.5, cy: 200.0 };
         let sensor = Sensor { measure: Measure::Disparity, intrinsics: Some(camera), ..Sensor::default() };
         let enlargement = Enlargement { columns: &[0], rows: &[0], factor: [2.0, 3.0] };
-        let params = Planar { min: 600, ray: 0.6, ..Planar::default() };
+        let params = Planar { min: 600, lateral_noise: 0.6, ..Planar::default() };
         let mut runner = Runner { params, ..Runner::default() };
         let mut told = Vec::new();
         let mut observer = |stage| told.push(stage);
         let mut job = Job { sensor, threads: 1, curved: true, joiner: None, observer: &mut observer };
         with_source(&mut runner, &mut job, &enlargement, |runner, job| {
             assert_eq!((runner.params.min, job.curved), (100, true));
-            assert!((runner.params.ray - 0.6 / 6.0f64.sqrt()).abs() < 1e-12);
+            assert!((runner.params.lateral_noise - 0.6 / 6.0f64.sqrt()).abs() < 1e-12);
             let source = job.sensor.intrinsics.unwrap();
             // The middle of a source pixel is the middle of its block.
             for [u, v] in [[0.0, 0.0], [7.0, 3.0], [100.0, 60.0]] {

@@ -35,17 +35,17 @@ pub(super) fn explain(
     at: [usize; 2],
 ) -> Result<Explanation> {
     let (mut seen, mut out) = (Trace::new(at, job.sensor), Detection::default());
-    let mut observe = |moment: Checkpoint, run: &Runner, noise: &NoiseModel| seen.look(moment, run, noise);
+    let mut observe = |checkpoint: Checkpoint, run: &Runner, noise: &NoiseModel| seen.look(checkpoint, run, noise);
     with_view!(map, map => runner.planar(map, job, &mut out, &mut observe))?;
     let value = with_view!(map, map => map.row(at[1])[at[0]].into());
     seen.conclude(runner, &out);
-    let verdict = seen.verdict(runner, &out);
-    let verdict = if seen.is_dropped(&out) { dropped(runner, map, job, at)? } else { verdict };
+    let verdict = verdict(&seen, runner, &out);
+    let verdict = if is_dropped(&seen, &out) { dropped(runner, map, job, at)? } else { verdict };
     let mut findings = vec![seen.pixel(value)];
     findings.append(&mut seen.findings);
     let values = runner.params.values();
     let tries = Tries { info, values: &values, map, sensor: job.sensor, at, planes: out.planes.len() };
-    let suggestions = seen.changes(&verdict, runner).into_iter().filter_map(|changes| tries.first(changes)).collect();
+    let suggestions = changes(&seen, &verdict, runner).into_iter().filter_map(|changes| tries.first(changes)).collect();
     Ok(Explanation { at, method: info.name, findings, verdict, suggestions })
 }
 
@@ -59,107 +59,106 @@ fn dropped(run: &Runner, map: AnyView<'_>, job: &mut Job<'_>, at: [usize; 2]) ->
     Ok(Verdict::Dropped { parameter: "min-area", value: area, limit: Limit::AtLeast(run.params.min_area) })
 }
 
-impl Trace {
-    fn verdict(&self, run: &Runner, out: &Detection) -> Verdict {
-        let label = out.labels[self.at[1] * out.width + self.at[0]];
-        let [pixels, roughness] = self.tile;
-        let least = f64::from(fewest(&run.pyramid.grids[0]));
-        let nearest = self.against.iter().find(|against| !against.is_curved);
-        let is_on_curved = self.against.first().is_some_and(|against| against.is_curved && against.off <= self.most);
-        if label > 0 {
-            let chosen = self.against.iter().find(|against| against.id + 1 == u32::from(self.assigned));
-            let off = chosen.map(|against| against.off);
-            return Verdict::Plane { label, pixels: out.planes[usize::from(label) - 1].pixel_count, off };
-        }
-        if self.q.is_nan() {
-            return Verdict::NotMeasured;
-        }
-        if self.assigned > 0 {
-            return Verdict::Small { pixels: self.piece, min: run.params.min, early: false };
-        }
-        match (self.fate, nearest) {
-            (Fate::Small(pixels), _) => Verdict::Small { pixels: pixels as usize, min: run.params.min, early: true },
-            (Fate::Curved, _) => Verdict::Curved,
-            (Fate::EdgeOn, _) => Verdict::EdgeOn,
-            (Fate::None, _) if is_on_curved => Verdict::Curved,
-            (Fate::None, _) if pixels < least => Verdict::Sparse { pixels: pixels as usize, least: least as usize },
-            (_, Some(near)) if near.off <= MOST_INLIER_THRESHOLD.max(2.0 * self.most) || self.fate != Fate::None => {
-                Verdict::Off { off: near.off, most: self.most, label: label_of(run, out, near.id) }
-            }
-            _ if roughness > 1.0 => Verdict::Uneven { roughness },
-            _ => Verdict::Alone,
-        }
+fn verdict(trace: &Trace, run: &Runner, out: &Detection) -> Verdict {
+    let label = out.labels[trace.at[1] * out.width + trace.at[0]];
+    let [pixels, roughness] = trace.tile;
+    let least = f64::from(fewest(&run.pyramid.grids[0]));
+    let nearest = trace.against.iter().find(|against| !against.is_curved);
+    if label > 0 {
+        let chosen = trace.against.iter().find(|against| against.id + 1 == u32::from(trace.assigned));
+        let off = chosen.map(|against| against.off);
+        return Verdict::Plane { label, pixels: out.planes[usize::from(label) - 1].pixel_count, off };
     }
+    if trace.q.is_nan() {
+        return Verdict::NotMeasured;
+    }
+    if trace.assigned > 0 {
+        return Verdict::Small { pixels: trace.piece, min: run.params.min, early: false };
+    }
+    if trace.is_on_curved {
+        return Verdict::Curved;
+    }
+    match (trace.fate, nearest) {
+        (Fate::Small(pixels), _) => Verdict::Small { pixels: pixels as usize, min: run.params.min, early: true },
+        (Fate::Curved, _) => Verdict::Curved,
+        (Fate::EdgeOn, _) => Verdict::EdgeOn,
+        (Fate::None, _) if pixels < least => Verdict::Sparse { pixels: pixels as usize, least: least as usize },
+        (_, Some(near)) if near.off <= MOST_INLIER_THRESHOLD.max(2.0 * trace.most) || trace.fate != Fate::None => {
+            Verdict::Off { off: near.off, most: trace.most, label: label_of(run, out, near.id) }
+        }
+        _ if roughness > 1.0 => Verdict::Uneven { roughness },
+        _ => Verdict::Alone,
+    }
+}
 
-    /// Whether its piece is large enough and has no label all the same.
-    fn is_dropped(&self, out: &Detection) -> bool {
-        self.is_large && out.labels[self.at[1] * out.width + self.at[0]] == 0
-    }
+/// Whether its piece is large enough and has no label all the same.
+fn is_dropped(trace: &Trace, out: &Detection) -> bool {
+    trace.is_large && out.labels[trace.at[1] * out.width + trace.at[0]] == 0
+}
 
-    /// Changes worth trying, a list for each parameter.
-    fn changes(&self, verdict: &Verdict, run: &Runner) -> Vec<Vec<Change>> {
-        let inlier_threshold = run.params.inlier_threshold;
-        let nothing = Vec::new;
-        match *verdict {
-            Verdict::Small { pixels, .. } => vec![smaller_min(pixels).collect()],
-            Verdict::Off { off, most, .. } => {
-                let times = off / most;
-                vec![self.inlier_thresholds(times * inlier_threshold), self.noises(run, times)]
-            }
-            Verdict::Uneven { .. } | Verdict::Alone | Verdict::Sparse { .. } => {
-                vec![
-                    smaller_min(run.params.min as usize / 2).take(3).collect(),
-                    self.inlier_thresholds(inlier_threshold),
-                    self.noises(run, 1.2),
-                ]
-            }
-            Verdict::Dropped { parameter, value, .. } => {
-                let smaller = [0.99 * value, 0.0].map(|value| vec![(parameter, rounded_down(value))]);
-                vec![smaller.to_vec()]
-            }
-            // Sensors bend walls a little; a ball is bent by much more.
-            Verdict::Curved => {
-                self.bow.filter(|bow| *bow < SLIGHT).map(|bow| self.noises(run, bow)).into_iter().collect()
-            }
-            _ => nothing(),
+/// Changes worth trying, a list for each parameter.
+fn changes(trace: &Trace, verdict: &Verdict, run: &Runner) -> Vec<Vec<Change>> {
+    let inlier_threshold = run.params.inlier_threshold;
+    let nothing = Vec::new;
+    match *verdict {
+        Verdict::Small { pixels, .. } => vec![smaller_min(pixels).collect()],
+        Verdict::Off { off, most, .. } => {
+            let times = off / most;
+            vec![inlier_thresholds(times * inlier_threshold), noises(trace, run, times)]
         }
+        Verdict::Uneven { .. } | Verdict::Alone | Verdict::Sparse { .. } => {
+            vec![
+                smaller_min(run.params.min as usize / 2).take(3).collect(),
+                inlier_thresholds(inlier_threshold),
+                noises(trace, run, 1.2),
+            ]
+        }
+        Verdict::Dropped { parameter, value, .. } => {
+            let smaller = [0.99 * value, 0.0].map(|value| vec![(parameter, rounded_down(value))]);
+            vec![smaller.to_vec()]
+        }
+        // Sensors bend walls a little; a ball is bent by much more.
+        Verdict::Curved => {
+            trace.bow.filter(|bow| *bow < SLIGHT).map(|bow| noises(trace, run, bow)).into_iter().collect()
+        }
+        _ => nothing(),
     }
+}
 
-    fn inlier_thresholds(&self, least: f64) -> Vec<Change> {
-        let values = FACTORS.map(|factor| rounded_up(1.01 * factor * least));
-        values
-            .into_iter()
-            .filter(|&value| value <= MOST_INLIER_THRESHOLD)
-            .map(|value| vec![("inlier-threshold", value)])
-            .collect()
-    }
+fn inlier_thresholds(least: f64) -> Vec<Change> {
+    let values = FACTORS.map(|factor| rounded_up(1.01 * factor * least));
+    values
+        .into_iter()
+        .filter(|&value| value <= MOST_INLIER_THRESHOLD)
+        .map(|value| vec![("inlier-threshold", value)])
+        .collect()
+}
 
-    /// The noise in use so many times, as parameters.
-    fn noises(&self, run: &Runner, least: f64) -> Vec<Change> {
-        let Some(noise) = self.noise else { return Vec::new() };
-        // What `noise-scale` makes of it comes on top again.
-        let here = noise.variance(self.q).sqrt() / run.params.noise_scale;
-        let most = FACTORS[FACTORS.len() - 1];
-        let factors = FACTORS.into_iter().map(|factor| 1.01 * factor * least).filter(|&factor| factor <= most);
-        let scaled = |factor: f64| match Space::of(self.sensor.measure) {
-            Space::Value => vec![("noise", rounded_up(factor * here))],
-            Space::InverseDepth { .. } => {
-                let (z, sigma_m) = (self.q.recip(), here / (self.q * self.q));
-                // At no range, as good as; what is below a nanometre is growth.
-                let base = noise.depth_sigma_m(1e-6).filter(|base| *base > 1e-9).unwrap_or(0.0);
-                let own = noise.depth_sigma_m(z).unwrap_or(0.0);
-                let growth = ((own - base) / (z * z)).max(0.0);
-                // What rounding adds counts as well, since the noise as stated may be nothing.
-                let times = factor * sigma_m / own;
-                if own > 0.0 && own > 0.3 * sigma_m {
-                    vec![("noise", rounded_up(times * base)), ("noise-growth", rounded_up(times * growth))]
-                } else {
-                    vec![("noise", rounded_up(factor * sigma_m)), ("noise-growth", 0.0)]
-                }
+/// The noise in use so many times, as parameters.
+fn noises(trace: &Trace, run: &Runner, least: f64) -> Vec<Change> {
+    let Some(noise) = trace.noise else { return Vec::new() };
+    // What `noise-scale` makes of it comes on top again.
+    let here = noise.variance(trace.q).sqrt() / run.params.noise_scale;
+    let most = FACTORS[FACTORS.len() - 1];
+    let factors = FACTORS.into_iter().map(|factor| 1.01 * factor * least).filter(|&factor| factor <= most);
+    let scaled = |factor: f64| match Space::of(trace.sensor.measure) {
+        Space::Value => vec![("noise", rounded_up(factor * here))],
+        Space::InverseDepth { .. } => {
+            let (z, sigma_m) = (trace.q.recip(), here / (trace.q * trace.q));
+            // At no range, as good as; what is below a nanometre is growth.
+            let base = noise.depth_sigma_m(1e-6).filter(|base| *base > 1e-9).unwrap_or(0.0);
+            let own = noise.depth_sigma_m(z).unwrap_or(0.0);
+            let growth = ((own - base) / (z * z)).max(0.0);
+            // What rounding adds counts as well, since the noise as stated may be nothing.
+            let times = factor * sigma_m / own;
+            if own > 0.0 && own > 0.3 * sigma_m {
+                vec![("noise", rounded_up(times * base)), ("noise-growth", rounded_up(times * growth))]
+            } else {
+                vec![("noise", rounded_up(factor * sigma_m)), ("noise-growth", 0.0)]
             }
-        };
-        factors.map(scaled).collect()
-    }
+        }
+    };
+    factors.map(scaled).collect()
 }
 
 #[cfg(test)]
@@ -199,33 +198,37 @@ mod tests {
         let stages = run();
         let run = &stages.run;
         let min = run.params.min;
-        let fated = |fate: Fate| Trace { fate, ..trace() }.verdict(run, &out());
-        assert_eq!(Trace { q: f64::NAN, fate: Fate::Curved, ..trace() }.verdict(run, &out()), Verdict::NotMeasured);
+        let fated = |fate: Fate| verdict(&Trace { fate, ..trace() }, run, &out());
+        assert_eq!(verdict(&Trace { q: f64::NAN, fate: Fate::Curved, ..trace() }, run, &out()), Verdict::NotMeasured);
         assert_eq!(fated(Fate::Small(30.0)), Verdict::Small { pixels: 30, min, early: true });
         assert_eq!((fated(Fate::Curved), fated(Fate::EdgeOn)), (Verdict::Curved, Verdict::EdgeOn));
         assert_eq!(fated(Fate::None), Verdict::Alone);
-        let seen = |tile: [f64; 2], against: Vec<Against>| Trace { tile, against, ..trace() }.verdict(run, &out());
+        let seen = |tile: [f64; 2], against: Vec<Against>| verdict(&Trace { tile, against, ..trace() }, run, &out());
         assert_eq!(seen([7.0, 0.5], vec![]), Verdict::Sparse { pixels: 7, least: 8 });
         assert_eq!(seen([8.0, 0.5], vec![]), Verdict::Alone);
         assert_eq!(seen([16.0, 3.0], vec![]), Verdict::Uneven { roughness: 3.0 });
         assert_eq!(seen([16.0, 3.0], against(5.0, false)), Verdict::Off { off: 5.0, most: 4.0, label: 0 });
         assert_eq!(seen([16.0, 3.0], against(50.0, false)), Verdict::Uneven { roughness: 3.0 });
-        assert_eq!(seen([16.0, 3.0], against(3.0, true)), Verdict::Curved);
+        // What went to a curved region is said to be curved, however near a plane is and whatever became of its tile.
+        for fate in [Fate::None, Fate::Kept, Fate::Redundant] {
+            let seen = Trace { fate, is_on_curved: true, against: against(0.3, false), ..trace() };
+            assert_eq!(verdict(&seen, run, &out()), Verdict::Curved);
+        }
         assert_eq!(seen([16.0, 3.0], against(5.0, true)), Verdict::Uneven { roughness: 3.0 });
         let piece = Trace { assigned: 1, piece: 12, ..trace() };
-        assert_eq!(piece.verdict(run, &out()), Verdict::Small { pixels: 12, min, early: false });
+        assert_eq!(verdict(&piece, run, &out()), Verdict::Small { pixels: 12, min, early: false });
         // A pixel that has a plane has it whatever else was seen.
         let mut found = out();
         found.labels[5 * 16 + 3] = 1;
         let place = crate::detection::PixelBox { u_min: 0, v_min: 0, u_max: 15, v_max: 15 };
         found.planes = vec![crate::detection::Plane::new(1, 222, place)];
         let seen = Trace { fate: Fate::Curved, assigned: 1, against: against(1.5, false), ..trace() };
-        assert_eq!(seen.verdict(run, &found), Verdict::Plane { label: 1, pixels: 222, off: Some(1.5) });
+        assert_eq!(verdict(&seen, run, &found), Verdict::Plane { label: 1, pixels: 222, off: Some(1.5) });
     }
 
     #[test]
     fn a_larger_inlier_threshold_is_suggested_that_reaches_the_pixel_and_none_beyond_the_most() {
-        let thresholds = |least: f64| trace().inlier_thresholds(least).into_iter().flatten().collect::<Vec<_>>();
+        let thresholds = |least: f64| inlier_thresholds(least).into_iter().flatten().collect::<Vec<_>>();
         let found = thresholds(5.0);
         assert!(
             found.len() > 2
@@ -244,18 +247,18 @@ mod tests {
         // Disparity: a deviation in map units.
         let seen = Trace { noise: Some(stages.noise), ..trace() };
         for least in [1.0, 1.7, 2.5] {
-            let noises = value(&seen.noises(&stages.run, least), "noise");
+            let noises = value(&noises(&seen, &stages.run, least), "noise");
             assert!((noises[0] / (1.01 * least * SIGMA) - 1.0).abs() < 0.1, "{noises:?}");
             assert!(
                 noises.windows(2).all(|pair| pair[0] < pair[1]) && noises.iter().all(|noise| *noise <= 4.1 * SIGMA)
             );
         }
-        assert_eq!(Trace { noise: None, ..trace() }.noises(&stages.run, 1.0), [] as [Change; 0]);
+        assert_eq!(noises(&Trace { noise: None, ..trace() }, &stages.run, 1.0), [] as [Change; 0]);
         // Depth: at 2 m the base and the growth together are so many times what they were.
         let measure = Measure::Depth { metres: 0.001 };
         let model = NoiseModel::new(measure, SensorNoise::Depth { base: 0.002, growth: 0.0015 }, 0.0).unwrap();
         let seen = Trace { q: 0.5, noise: Some(model), sensor: Sensor { measure, ..SENSOR }, ..trace() };
-        let changes = seen.noises(&stages.run, 2.0);
+        let changes = noises(&seen, &stages.run, 2.0);
         let [base, growth] = ["noise", "noise-growth"].map(|name| value(&changes, name)[0]);
         let (before, after) = (0.002 + 0.0015 * 4.0, base + growth * 4.0);
         assert!((after / (2.02 * before) - 1.0).abs() < 0.05, "{after} m, before it was {before}");
@@ -267,20 +270,20 @@ mod tests {
         let stages = run();
         let seen = Trace { noise: Some(stages.noise), ..trace() };
         let names = |verdict: Verdict| {
-            let changes = seen.changes(&verdict, &stages.run);
+            let changes = changes(&seen, &verdict, &stages.run);
             changes.iter().map(|changes| changes[0][0].0).collect::<Vec<_>>()
         };
         assert_eq!(names(Verdict::Small { pixels: 50, min: 100, early: false }), ["min"]);
         assert_eq!(names(Verdict::Off { off: 6.0, most: 4.0, label: 1 }), ["inlier-threshold", "noise"]);
         assert_eq!(names(Verdict::Uneven { roughness: 2.0 }), ["min", "inlier-threshold", "noise"]);
         let dropped = Verdict::Dropped { parameter: "min-area", value: 0.5, limit: Limit::AtLeast(1.0) };
-        assert_eq!(seen.changes(&dropped, &stages.run), [[vec![("min-area", 0.49)], vec![("min-area", 0.0)]]]);
+        assert_eq!(changes(&seen, &dropped, &stages.run), [[vec![("min-area", 0.49)], vec![("min-area", 0.0)]]]);
         assert_eq!(names(Verdict::NotMeasured), [""; 0]);
         // A slight bow may be the sensor's, a strong one is not.
         assert_eq!(names(Verdict::Curved), [""; 0]);
         for (bow, expected) in [(1.4, 1), (1.6, 0)] {
             let seen = Trace { bow: Some(bow), noise: Some(stages.noise), ..trace() };
-            assert_eq!(seen.changes(&Verdict::Curved, &stages.run).len(), expected);
+            assert_eq!(changes(&seen, &Verdict::Curved, &stages.run).len(), expected);
         }
     }
 }

@@ -40,7 +40,7 @@ impl Flood {
         &mut self,
         affine: &AffineMap,
         planes: &Planes<'_>,
-        seams: &Boundary,
+        boundary: &Boundary,
         bands: &[Range<usize>],
         image: &mut [u16],
         threads: usize,
@@ -53,7 +53,7 @@ impl Flood {
             let rows = finer(band, ROWS);
             let rows = rows.start..rows.end.min(height);
             let mut area = Area { affine, planes, rows: rows.clone(), image, work };
-            seams.each_open(rows, |place| area.ask_around(place));
+            boundary.each_open(rows, |place| area.ask_around(place));
         });
         for (band, work) in bands.iter().zip(&mut self.works).skip(1) {
             let edge = finer(band, ROWS).start;
@@ -178,12 +178,12 @@ impl Touching {
 
 impl Contacts {
     /// Lists the regions that touch in an image, on as many threads.
-    pub(super) fn list(&mut self, seams: &Boundary, image: &[u16], threads: usize) {
+    pub(super) fn list(&mut self, boundary: &Boundary, image: &[u16], threads: usize) {
         // A pixel makes two pairs, with its left and its upper neighbour.
-        let per_row = 2 * image.len() / seams.rows();
-        for_row_blocks(threads, seams.rows(), ROWS_AT_A_TIME, &mut self.parts, |part, rows| {
+        let per_row = 2 * image.len() / boundary.rows();
+        for_row_blocks(threads, boundary.rows(), ROWS_AT_A_TIME, &mut self.parts, |part, rows| {
             part.prepare(rows.len() * per_row);
-            seams.each(rows, image, |a, b| part.touch(a, b));
+            boundary.each(rows, image, |a, b| part.touch(a, b));
         });
     }
 

@@ -326,8 +326,8 @@ impl GridRows<'_> {
         let numbers = n.iter().zip(&**squares).zip(&**child_misfit).zip(&**variance).zip(&**smooth);
         for (((((&n, &squares), &child_misfit), &variance), &smooth), roughness) in numbers.zip(&mut **roughness) {
             let free = larger(n - 3.0, 1.0);
-            let bend = if parts.is_some() { FLAT.smooth as f32 * n * smooth } else { 0.0 };
-            let own = squares * n / (free * (limit(n, inlier_threshold) * variance + bend));
+            let smooth_part = if parts.is_some() { FLAT.smooth as f32 * n * smooth } else { 0.0 };
+            let own = squares * n / (free * (limit(n, inlier_threshold) * variance + smooth_part));
             let most = FLAT.variances as f32 * variance + FLAT.smooth as f32 * n / 4.0 * smooth;
             *roughness = larger(own, child_misfit / most);
         }

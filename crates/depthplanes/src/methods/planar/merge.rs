@@ -51,7 +51,7 @@ fn slot([a, b]: [u32; 2]) -> usize {
 /// Slots of the table of edges that were just met; a power of two.
 const RECENT: usize = 1024;
 /// Pairs that are weighed sooner than a second thread wakes up.
-const FEW_PAIRS: usize = 512;
+const FEW_EDGES: usize = 512;
 /// Rows of tiles that are looked through at a time.
 const ROWS: usize = 64;
 
@@ -87,7 +87,7 @@ impl Merger {
         }
         reserve_to(&mut self.has_changed, grid.len());
         self.into.extend(0..regions.all.len() as u32);
-        self.list_pairs(grid, threads);
+        self.list_edges(grid, threads);
         self.merge_listed(&mut regions.all, rays, threads);
     }
 
@@ -112,7 +112,7 @@ impl Merger {
         self.drop(grid, regions, threads, |region| region.sums.n < least);
         match regions.all.len() {
             found if found >= MAX_PLANES =>
-            // one label more is taken, [`super::planes::BENT`]
+            // one label more is taken, [`super::region::BENT`]
             {
                 Err(Error::TooManyPlanes { found })
             }
@@ -126,7 +126,7 @@ impl Merger {
     }
 
     /// Lists the edges of the region adjacency graph, on as many threads.
-    pub(super) fn list_pairs(&mut self, grid: &Grid, threads: usize) {
+    pub(super) fn list_edges(&mut self, grid: &Grid, threads: usize) {
         let Merger { edges, parts, .. } = self;
         for_row_blocks(threads, grid.rows, ROWS, parts, |part, rows| {
             vectorised(
@@ -300,7 +300,7 @@ fn weigh(edges: &mut [Edge], all: &[Region], rays: &Rays, threads: usize) {
             || weigh(edges),
         )
     };
-    let threads = if edges.len() < FEW_PAIRS { 1 } else { threads };
+    let threads = if edges.len() < FEW_EDGES { 1 } else { threads };
     map_reduce(threads, edges, weigh, |(), ()| ());
 }
 
@@ -323,7 +323,7 @@ fn goes_on(a: &Region, b: &Region, [u, v]: [f64; 2], rays: &Rays) -> bool {
     if step * step > BOWED_STEP * BOWED_STEP * limit(a).max(limit(b)) {
         return false;
     }
-    let [m, n] = [a, b].map(|region| rays.inverse([region.abc[0], region.abc[1]], |u, v| region.at(u, v)));
+    let [m, n] = [a, b].map(|region| region.inverse(rays));
     let (both, squares) = (dot(m, n), dot(m, m) * dot(n, n));
     let cosine = BOWED_ANGLE.to_radians().cos();
     both > 0.0 && both * both >= cosine * cosine * squares
@@ -389,7 +389,7 @@ mod tests {
             }
             for threads in [1, 3] {
                 let mut merger = Merger::default();
-                merger.list_pairs(&grid, threads);
+                merger.list_edges(&grid, threads);
                 let found = merger.edges.iter().map(|edge| (edge.ids, [edge.contacts, edge.at[0], edge.at[1]]));
                 assert_eq!(found.collect::<Vec<_>>(), expected.clone().into_iter().collect::<Vec<_>>());
                 for edge in &merger.edges {

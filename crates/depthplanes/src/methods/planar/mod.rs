@@ -10,7 +10,6 @@ mod counts;
 mod crease;
 mod curvature;
 mod curved;
-mod curved_regions;
 mod enlarged;
 mod explain;
 mod extend;

@@ -2,8 +2,7 @@
 
 use super::assign::assign;
 use super::curvature::Shown;
-use super::curved::{CurvatureTest, Sensing};
-use super::curved_regions::{curved_of, join_facets};
+use super::curved::{CurvatureTest, Sensing, join_facets};
 use super::extend::{Contacts, Flood};
 use super::grow::Regions;
 use super::layout::AffineMap;
@@ -293,6 +292,6 @@ impl Runner {
         self.assign(noise, true, job.threads);
         let Runner { params, affine, pyramid, regions, merger, image, extraction, facet_surfaces, .. } = self;
         join_facets(&regions.all, &merger.edges, noise, facet_surfaces, image, pyramid.grids[0].len());
-        curved_of(extraction, map, &of_image(image, affine)?, params.min, job, old)
+        extraction.extract_curved(map, &of_image(image, affine)?, params.min, job, old)
     }
 }

@@ -54,13 +54,13 @@ impl Refiner {
             let mut part = TileRows { grid, first: rows.start, region, all };
             vectorised(
                 #[inline(always)]
-                || part.settle(inner, moves),
+                || part.refine(inner, moves),
             );
         });
         let mut whole = TileRows { grid, first: 0, region: &mut region, all };
         for (band, moves) in bands.iter().zip(&mut *moves).skip(1) {
             let edge = pyramid.rows_of(band, 0).start;
-            whole.settle(edge - 1..edge + 1, moves);
+            whole.refine(edge - 1..edge + 1, moves);
         }
         reserve_to(has_changed, grid.len());
         has_changed.resize(all.len(), false);
@@ -88,7 +88,7 @@ struct TileRows<'a> {
 impl TileRows<'_> {
     /// Lets the tiles of some rows go over; those of the rows beside them are known.
     #[inline(always)]
-    fn settle(&mut self, rows: Range<usize>, moves: &mut Vec<Move>) {
+    fn refine(&mut self, rows: Range<usize>, moves: &mut Vec<Move>) {
         let columns = self.grid.columns;
         for row in rows {
             for first in (0..columns).step_by(LANES) {
@@ -97,7 +97,7 @@ impl TileRows<'_> {
                 while rest != 0 {
                     let column = first + rest.trailing_zeros() as usize / 8;
                     rest &= rest - 1;
-                    if let Some(step) = self.settle_tile(Place::new(column, row)) {
+                    if let Some(step) = self.refine_tile(Place::new(column, row)) {
                         moves.push(step);
                     }
                 }
@@ -106,7 +106,7 @@ impl TileRows<'_> {
     }
 
     #[inline(always)]
-    fn settle_tile(&mut self, place: Place) -> Option<Move> {
+    fn refine_tile(&mut self, place: Place) -> Option<Move> {
         let (grid, all, region) = (self.grid, self.all, &mut *self.region);
         let before = self.first * grid.columns;
         let at = grid.at(place);

@@ -6,6 +6,7 @@ use super::thresholds::EDGE_ON;
 use crate::camera::Measure;
 use crate::error::Result;
 use crate::map::DepthView;
+use crate::methods::rays::{Rays, Vec3};
 use crate::noise::{NoiseModel, Space};
 use crate::statistics::least_squares::Moments;
 use crate::util::memory::reserve_to;
@@ -63,6 +64,11 @@ impl Region {
     pub(super) fn at(&self, u: f64, v: f64) -> f64 {
         let [u0, v0, q0] = self.origin;
         self.abc[0] * (u - u0) + self.abc[1] * (v - v0) + self.abc[2] + q0
+    }
+
+    /// n of its plane in space, `n . point = 1`.
+    pub(super) fn inverse(&self, rays: &Rays) -> Vec3 {
+        rays.inverse([self.abc[0], self.abc[1]], |u, v| self.at(u, v))
     }
 
     /// The plane about a pixel: its slope along u and v, and q there.

@@ -128,7 +128,7 @@ impl Stages {
     pub(super) fn list_edges(&mut self) {
         let Runner { pyramid, merger, .. } = &mut self.run;
         merger.edges.clear();
-        merger.list_pairs(&pyramid.grids[0], 1);
+        merger.list_edges(&pyramid.grids[0], 1);
     }
 
     /// Judges the regions that there are.

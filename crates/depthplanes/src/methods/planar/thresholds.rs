@@ -21,23 +21,25 @@ impl Allowance {
     }
 }
 
-/// What the plane of a region may add to the squares of a cell that joins it. A plane's three parameters add 3 in the
-/// mean; from 10 to 30 the recorded frames are the same within two surfaces. Smooth: 3.5 deviations.
+/// What the plane of a region may add to the squares that a flat cell larger than a tile has about its own plane, if it joins.
+/// A plane's three parameters add 3 in the mean; from 10 to 30 the recorded frames are the same within two surfaces. Smooth:
+/// 3.5 deviations. A tile's whole squares about the region's plane are held against [`limit`] and the same smooth part.
 pub(super) const JOIN: Allowance = Allowance { variances: 20.0, smooth: 12.0 };
 /// What the plane of a flat cell may add to the squares of each of its parts. Tighter than [`JOIN`], since what grows from
-/// it is known by it alone: of 100 surfaces of recorded
-/// frames five more are lost at 4 deviations squared than at 1.5.
+/// it is known by it alone: of 100 surfaces of recorded frames five more are lost at 4 than at 1.5 times the smooth variance,
+/// and it is as good at 1.25.
 pub(super) const FLAT: Allowance = Allowance { variances: 10.0, smooth: 1.25 };
 /// What the joint plane of two regions that are one may add to either, for each pixel: half a variance, and 2.5 deviations
 /// of the smooth part.
 pub(super) const MERGE: Allowance = Allowance { variances: 0.5, smooth: 6.0 };
 
-/// Two regions whose joint plane adds up to so many times what [`MERGE`] allows, and what either shows beyond that by itself,
-/// are one if they also meet without a step and at a small angle: the bow of a wall over metres is a camera's, and no
-/// statistic of a small patch sees it. Recorded frames are the same from 16 to 24; beyond, made-up walls run into columns of
-/// a large radius.
+/// Two regions that meet without a step and at a small angle are one as well if their joint plane adds up to
+/// `BOWED_MERGE * excess` times what [`MERGE`] allows, where `excess` is the larger of what either's own squares are in units
+/// of its noise, from 1 to [`BOWED_EXCESS`]. So it is 16 to 64 times as much: the bow of a wall over metres is a camera's,
+/// and no statistic of a small patch sees it. Recorded frames are the same from 16 to 24; beyond, synthetic walls run into
+/// columns of a large radius.
 pub(super) const BOWED_MERGE: f64 = 16.0;
-/// Most times that what either shows by itself counts: a region that bows by more was merged of two.
+/// Largest excess that counts: a region that lies off its own plane by more was merged of two.
 pub(super) const BOWED_EXCESS: f64 = 4.0;
 /// Largest angle at which they meet, degrees; what turns by more is an edge or a bend. Of 580 surfaces (recorded frames,
 /// mirrored, turned and cropped) 90.7 % are whole at 6, and between 8 and 12 the figures are the same within a point, while a

@@ -65,6 +65,8 @@ pub(super) struct Trace {
     pub(super) most: f64,
     /// Region image at the pixel.
     pub(super) assigned: u16,
+    /// Whether the pixel went to a curved region.
+    pub(super) is_on_curved: bool,
     /// Pixels of the connected piece it is in.
     pub(super) piece: usize,
     pub(super) is_large: bool,
@@ -84,16 +86,17 @@ impl Trace {
             against: Vec::new(),
             most: 0.0,
             assigned: 0,
+            is_on_curved: false,
             piece: 0,
             is_large: false,
             noise: None,
         }
     }
 
-    pub(super) fn look(&mut self, moment: Checkpoint, run: &Runner, noise: &NoiseModel) {
+    pub(super) fn look(&mut self, checkpoint: Checkpoint, run: &Runner, noise: &NoiseModel) {
         self.noise = Some(*noise);
         self.q = run.affine.q[self.at[1] * run.affine.stride + self.at[0]].into();
-        match moment {
+        match checkpoint {
             Checkpoint::Grown => self.look_at_cells(run),
             Checkpoint::Merged => self.look_at_region(run),
             Checkpoint::Shown => self.look_at_smooth(run, noise),
@@ -188,14 +191,14 @@ impl Trace {
             return;
         }
         let finding = Finding::new(
-            "grow",
+            "merge",
             "the part that its neighbours share",
             "over long ways, as large cells or regions show it",
         );
         self.findings.push(self.with_smooth(finding, noise));
         let grid = &run.pyramid.grids[0];
         if let Some(region) = run.regions.all.get(grid.region[self.cell(grid)] as usize) {
-            let finding = Finding::new("grow", "the region of the tile, merged by that", "");
+            let finding = Finding::new("merge", "the region of the tile, merged by that", "");
             self.findings.push(finding.with("pixels", region.sums.n, ""));
         }
     }
@@ -236,7 +239,7 @@ impl Trace {
         };
         let is_small = region.sums.n < run.params.least();
         let least = Limit::AtLeast(run.params.least());
-        let finding = Finding::new("grow", subject, if is_small { "dropped, too small" } else { "" })
+        let finding = Finding::new("merge", subject, if is_small { "dropped, too small" } else { "" })
             .with("pixels", region.sums.n, "")
             .limit(least)
             .with("rms", (region.squares / region.variance).sqrt(), DEVIATIONS)
@@ -329,7 +332,7 @@ impl Trace {
         let [u, v] = self.at.map(|place| place as f64);
         self.most = factor * run.params.inlier_threshold;
         let label = run.image[self.at[1] * run.affine.stride + self.at[0]];
-        self.assigned = if label == BENT { 0 } else { label };
+        (self.assigned, self.is_on_curved) = if label == BENT { (0, true) } else { (label, false) };
         let planes = run.params.planes(&run.regions.all, noise, false);
         let held = ids.into_iter().map(|id| {
             let region = planes.region(id);
