@@ -107,7 +107,7 @@ impl Detector {
         self
     }
 
-    /// Whether to report curved surfaces as well ([`Detection::curved`]), which costs time. `planar` tells them from
+    /// Whether to report curved surfaces as well ([`Detection::curved`]), which costs time; the stage `label` then ends twice. `planar` tells them from
     /// planes, `ngaf` does not.
     #[must_use]
     pub fn curved(mut self, yes: bool) -> Self {

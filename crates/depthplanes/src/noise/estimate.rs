@@ -4,9 +4,10 @@
 //! [`Scales`] measures on the maps' cells. The variance of rounding to steps D, D^2 / 12, is subtracted from the
 //! white part: rounding is part of the map, not of the sensor.
 
+use super::errors::Errors;
 use super::model::NoiseModel;
 use super::rounding::{Rounding, RoundingFinder};
-use super::scales::{Cell, Cells, Errors, FEW, SIDES, SUMMED, Scales};
+use super::scales::{Cell, Cells, FEW, SIDES, SUMMED, Scales};
 use super::sensor_noise::SensorNoise;
 use super::space::{LARGEST_Q, Space};
 use super::steps::Steps;

@@ -6,8 +6,10 @@
 //! of time of flight is constant in depth; both parts add. [`Estimator`] estimates the noise from frames.
 
 mod enlarged;
+pub(crate) mod errors;
 mod estimate;
 mod lanes;
+mod median;
 mod model;
 mod rounding;
 pub(crate) mod scales;

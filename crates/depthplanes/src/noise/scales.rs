@@ -5,8 +5,9 @@
 //! a cell's side, smooth error does not. Differences across the scene's edges do not fall either, but the median
 //! ignores them as long as they are less than half of what is looked at.
 
+use super::errors::Errors;
+use super::median::{median, middle_of, pair_order};
 use super::rounding::{Rounding, steady};
-use super::sensor_noise::SensorNoise;
 use super::space::Space;
 use crate::util::memory::reserve_to;
 use crate::util::simd::vectorised;
@@ -107,27 +108,6 @@ pub(crate) struct Scales {
     fours: Vec<Cell>,
     numbers: Vec<f32>,
     steep: Vec<Steep>,
-}
-
-/// The parts of a pixel's error. Standard deviations of q are multiples of `constant + square q^2` where the surface
-/// faces the camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Errors {
-    /// Standard deviation of means over tiles of 4 x 4 pixels.
-    pub(crate) constant: f64,
-    pub(crate) square: f64,
-    /// Lateral error of a pixel's direction, pixels: on a slope g the variance of these means is larger by `ray^2 g^2`.
-    pub(crate) ray: f64,
-    /// Standard deviations of single pixels about a tile's plane, and of means over 16 x 16, as multiples of that.
-    pub(crate) white: f64,
-    pub(crate) smooth: f64,
-    /// The larger of the multiples for means over 16 x 16 and over 32 x 32 in cells without an edge, if many cells are.
-    pub(crate) wide: f64,
-    /// As `wide`, from the cells without an edge, however few, and with the waves that are longer than these, of
-    /// which second differences see a part: extrapolated to 32 times the root of 2 pixels at the growth from 16 to 32.
-    pub(crate) whole: f64,
-    /// A q in the middle of those that were seen.
-    pub(crate) q: f64,
 }
 
 impl Scales {
@@ -327,29 +307,6 @@ impl Cell {
     }
 }
 
-impl Errors {
-    /// The errors of a map that shows too little.
-    pub(crate) const NONE: Errors =
-        Errors { constant: 0.0, square: 0.0, ray: 0.0, white: 4.0, smooth: 0.25, wide: 0.25, whole: 0.25, q: 1.0 };
-
-    /// Variance of the mean over a tile.
-    #[inline(always)]
-    pub(crate) fn variance(&self, q: f64, slope: f64) -> f64 {
-        let sigma = self.constant + self.square * q * q;
-        sigma * sigma + self.ray * self.ray * slope
-    }
-
-    /// `factor` times the error of a tile's mean, as the noise of a sensor.
-    pub(crate) fn times(&self, factor: f64, space: Space) -> SensorNoise {
-        match space {
-            Space::InverseDepth { .. } => {
-                SensorNoise::Depth { base: factor * self.square, growth: factor * self.constant }
-            }
-            Space::Value => SensorNoise::Value { sigma: factor * self.constant },
-        }
-    }
-}
-
 /// The least variance of a tile's mean, by rounding and single precision.
 #[inline(always)]
 fn floor(q: f64, rounding: &Rounding) -> f64 {
@@ -425,33 +382,4 @@ fn ray_of(steep: &[Bend], memory: &mut Vec<Steep>, flat: impl Fn(&Bend) -> f64) 
         (low, high) = if smaller > quarter { (low, ray) } else { (ray, high) };
     }
     low
-}
-
-/// The median of numbers.
-#[inline(always)]
-fn median(memory: &mut Vec<f32>, numbers: impl Iterator<Item = f32>) -> f64 {
-    memory.clear();
-    memory.extend(numbers);
-    middle_of(memory)
-}
-
-/// The middle one of the sorted numbers, of which there is at least one.
-#[inline(always)]
-fn middle_of(numbers: &mut [f32]) -> f64 {
-    let at = numbers.len() / 2;
-    (*numbers.select_nth_unstable_by(at, f32::total_cmp).1).into()
-}
-
-/// The bits of a number as an integer that sorts as [`f32::total_cmp`] does.
-#[inline(always)]
-fn order(number: f32) -> i32 {
-    let bits = number.to_bits() as i32;
-    bits ^ (((bits >> 31) as u32) >> 1) as i32
-}
-
-/// A pair as one integer that sorts by the first number ([`f32::total_cmp`]), then by the second.
-#[inline(always)]
-fn pair_order(first: f32, second: f32) -> i64 {
-    let [first, second] = [first, second].map(|number| i64::from(order(number)));
-    (first << 32) + second
 }

@@ -214,7 +214,7 @@ fn overlap(a: &Pixels<f32>, b: &Pixels<f32>) -> bool {
 mod tests {
     use super::*;
     use crate::methods::planar::layout::SIDE;
-    use crate::methods::planar::region::BENT;
+    use crate::methods::planar::region::CURVED_LABEL;
     use crate::methods::planar::testing::{Made, SIGMA, Stages, THRESHOLD, noise, planes};
     use crate::util::random::Random;
 
@@ -343,7 +343,7 @@ mod tests {
     #[test]
     fn a_plane_goes_before_a_facet_of_a_curved_surface_and_either_has_the_labels_that_are_sought() {
         let made = Made::noisy([128, 64], 3, |u, v| 40.0 + 0.05 * u - 0.03 * v);
-        for (curved, expected) in [(false, [1, BENT, 1]), (true, [0, 2, 0])] {
+        for (curved, expected) in [(false, [1, CURVED_LABEL, 1]), (true, [0, 2, 0])] {
             let mut stages = Stages::tiles(&made, noise(0.0));
             stages.divide(|column, _| u32::from(column >= 16));
             stages.run.regions.all[1].is_curved = true;

@@ -9,7 +9,7 @@
 
 use super::layout::{AffineMap, ROWS, finer, for_each_band};
 use super::merge::merge_cost;
-use super::region::{BENT, Planes, Region};
+use super::region::{CURVED_LABEL, Planes, Region};
 use crate::components::boundary::Boundary;
 use crate::util::memory::reserve_to;
 use crate::util::parallel::{for_row_blocks, map_reduce};
@@ -99,7 +99,7 @@ impl Area<'_> {
         let labels = self.neighbours(place).map(|place| self.image[self.at(place)]);
         let (mut own, mut best) = (0, f64::INFINITY);
         for label in labels {
-            if label > 0 && label != BENT && label != own {
+            if label > 0 && label != CURVED_LABEL && label != own {
                 let region = self.planes.region(u32::from(label) - 1);
                 let on_plane = region.at(u, v);
                 let off = (q - on_plane).powi(2);
@@ -166,7 +166,7 @@ impl Touching {
     #[inline(always)]
     pub(super) fn touch(&mut self, a: u16, b: u16) {
         let pair @ [a, b] = [a.min(b), a.max(b)];
-        if a > 0 && a != b && b != BENT {
+        if a > 0 && a != b && b != CURVED_LABEL {
             let recent = &mut self.recent[usize::from(a.wrapping_mul(31).wrapping_add(b)) % RECENT];
             if *recent != pair {
                 *recent = pair;
@@ -237,7 +237,7 @@ impl Contacts {
     }
 }
 
-/// Gives every pixel the label that its own has become; [`BENT`] stays.
+/// Gives every pixel the label that its own has become; [`CURVED_LABEL`] stays.
 #[inline(always)]
 fn relabel(groups: &mut [[u16; LANES]], into: &[u16]) {
     let now = |label: u16| into.get(usize::from(label)).map_or(label, |&into| into);
@@ -331,7 +331,7 @@ mod tests {
                 _ => plane(u, v) + SIGMA * (4.1 + random.uniform()),
             });
             let labels: Vec<u16> = (0..128 * 64)
-                .map(|_| if random.uniform() < 0.003 { 1 } else { u16::from(random.uniform() < 0.01) * BENT })
+                .map(|_| if random.uniform() < 0.003 { 1 } else { u16::from(random.uniform() < 0.01) * CURVED_LABEL })
                 .collect();
             let stages = floor(0.0);
             let mut expected = labels.clone();
@@ -410,7 +410,7 @@ mod tests {
             let edge = if touch { 65 } else { 66 };
             // Curved regions lie below; a third region touches nothing.
             let label = |[u, v]: [usize; 2]| match () {
-                _ if v >= 60 => BENT,
+                _ if v >= 60 => CURVED_LABEL,
                 _ if v >= 50 => 3 * u16::from((70..80).contains(&u) && v < 58 && v > 52),
                 _ if u < 65 => 1,
                 _ if u >= edge => 2,
@@ -438,7 +438,7 @@ mod tests {
             stages.run.regions.all.copy_from_slice(&before);
             let mut elsewhere = Touching::default();
             elsewhere.prepare(8);
-            for (a, b) in [(2, 1), (1, 1), (0, 1), (1, BENT), (2, 1)] {
+            for (a, b) in [(2, 1), (1, 1), (0, 1), (1, CURVED_LABEL), (2, 1)] {
                 elsewhere.touch(a, b);
             }
             assert_eq!(elsewhere.pairs, [[1, 2]]);

@@ -112,7 +112,7 @@ impl Merger {
         self.drop(grid, regions, threads, |region| region.sums.n < least);
         match regions.all.len() {
             found if found >= MAX_PLANES =>
-            // one label more is taken, [`super::region::BENT`]
+            // one label more is taken, [`super::region::CURVED_LABEL`]
             {
                 Err(Error::TooManyPlanes { found })
             }

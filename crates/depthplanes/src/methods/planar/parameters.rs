@@ -4,7 +4,8 @@ use super::region::{Planes, Region};
 use crate::methods::extraction::MIN;
 use crate::methods::noise::{NOISE, NOISE_GROWTH, NOISE_SCALE, SMOOTH_NOISE, SMOOTH_NOISE_GROWTH, stated};
 use crate::methods::parameter::{Param, ParamKind, defaults, setters};
-use crate::noise::scales::{Errors, RAY};
+use crate::noise::errors::Errors;
+use crate::noise::scales::RAY;
 use crate::noise::{NoiseModel, Rounding, SensorNoise, Space};
 use crate::sensor::Sensor;
 

@@ -23,7 +23,8 @@ use crate::map::{DepthView, Pixel};
 use crate::methods::extraction::{Extraction, Wanted};
 use crate::methods::method::Job;
 use crate::methods::rays::Rays;
-use crate::noise::scales::{Errors, Scales};
+use crate::noise::errors::Errors;
+use crate::noise::scales::Scales;
 use crate::noise::{NoiseModel, Rounding, RoundingFinder, Space};
 use crate::util::parallel::join;
 use crate::util::switches::is_on;
@@ -224,7 +225,7 @@ impl Runner {
     }
 
     /// Assign: the region of every pixel: its plane, or its curved region; while planes are sought, all curved ones as
-    /// [`super::region::BENT`].
+    /// [`super::region::CURVED_LABEL`].
     pub(super) fn assign(&mut self, noise: &NoiseModel, curved: bool, threads: usize) {
         let Runner { params, affine, pyramid, regions, image, .. } = self;
         image.resize(affine.q.len(), 0);

@@ -202,7 +202,7 @@ pub(super) struct Planes<'a> {
 }
 
 /// The label of what belongs to a curved region while planes are sought.
-pub(super) const BENT: u16 = u16::MAX;
+pub(super) const CURVED_LABEL: u16 = u16::MAX;
 
 impl Planes<'_> {
     #[inline(always)]
@@ -210,12 +210,12 @@ impl Planes<'_> {
         &self.regions[id as usize]
     }
 
-    /// A region's label in the region image while planes are sought: [`BENT`] for all that are curved; while curved ones
+    /// A region's label in the region image while planes are sought: [`CURVED_LABEL`] for all that are curved; while curved ones
     /// are, 0 for planes.
     #[inline(always)]
     pub(super) fn label(&self, id: u32) -> u16 {
         match (self.region(id).is_curved, self.curved) {
-            (true, false) => BENT,
+            (true, false) => CURVED_LABEL,
             (false, true) => 0,
             _ => id as u16 + 1,
         }
@@ -240,10 +240,10 @@ impl Planes<'_> {
     }
 }
 
-/// A region image as a map of numbers, [`BENT`] and 0 missing.
+/// A region image as a map of numbers, [`CURVED_LABEL`] and 0 missing.
 pub(super) fn of_image<'a>(image: &'a [u16], affine: &AffineMap) -> Result<DepthView<'a, u16>> {
     let AffineMap { width, height, stride, .. } = *affine;
-    DepthView::with_stride(&image[..stride * height], width, height, stride)?.valid_range(1, BENT - 1)
+    DepthView::with_stride(&image[..stride * height], width, height, stride)?.valid_range(1, CURVED_LABEL - 1)
 }
 
 /// Columns and rows of cells around a region.
@@ -463,12 +463,12 @@ mod tests {
         stages.divide(|column, _| u32::from(column > 15));
         stages.run.regions.all[1].is_curved = true;
         let of_planes = planes(stages.all(), &stages.noise);
-        assert_eq!([0, 1].map(|id| of_planes.label(id)), [1, BENT]);
+        assert_eq!([0, 1].map(|id| of_planes.label(id)), [1, CURVED_LABEL]);
         let of_curved = Planes { curved: true, ..of_planes };
         assert_eq!([0, 1].map(|id| of_curved.label(id)), [0, 2]);
         // An image of them has neither those of no region nor the curved ones.
         let AffineMap { stride, rows, .. } = stages.run.affine;
-        let image: Vec<u16> = (0..stride * rows).map(|at| [0, 1, BENT, 3][at % 4]).collect();
+        let image: Vec<u16> = (0..stride * rows).map(|at| [0, 1, CURVED_LABEL, 3][at % 4]).collect();
         let view = of_image(&image, &stages.run.affine).unwrap();
         assert_eq!((view.width(), view.height()), (128, 64));
         assert_eq!(view.valid_pixels(), 64 * 64);

@@ -8,7 +8,7 @@ use super::curved::Evidence;
 use super::grid::{Grid, NONE};
 use super::grow::fewest;
 use super::pipeline::{Checkpoint, Runner};
-use super::region::{BENT, Region};
+use super::region::{CURVED_LABEL, Region};
 use super::thresholds::EDGE_ON;
 use crate::camera::{Hessian, Measure};
 use crate::detection::Detection;
@@ -332,7 +332,7 @@ impl Trace {
         let [u, v] = self.at.map(|place| place as f64);
         self.most = factor * run.params.inlier_threshold;
         let label = run.image[self.at[1] * run.affine.stride + self.at[0]];
-        (self.assigned, self.is_on_curved) = if label == BENT { (0, true) } else { (label, false) };
+        (self.assigned, self.is_on_curved) = if label == CURVED_LABEL { (0, true) } else { (label, false) };
         let planes = run.params.planes(&run.regions.all, noise, false);
         let held = ids.into_iter().map(|id| {
             let region = planes.region(id);
