@@ -35,7 +35,7 @@ fn curved_surfaces_are_counted_recorded_and_written() {
     let bench = Bench::new("curved");
     let scene = "scene:curved:sensor=tof_white,size=160x120";
     let out = bench.run(&["detect", scene, "--curved", "--out-dir", "d"]).ok();
-    assert!(out.contains("surfaces that bend on"), "{out}");
+    assert!(out.contains("curved surfaces on"), "{out}");
     let of_scene = |end: &str| format!("d/scene_curved_sensor_tof_white_size_160x120.{end}");
     let record: Value = serde_json::from_slice(&bench.read(&of_scene("planes.json"))).unwrap();
     let regions = record["curved"].as_array().unwrap();

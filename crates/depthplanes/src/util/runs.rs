@@ -1,5 +1,6 @@
 //! Runs of equal numbers in a row.
 
+use super::bits::each_one;
 use std::ops::Range;
 
 /// The number of a place that belongs to nothing.
@@ -21,11 +22,7 @@ pub(crate) fn each_run(row: &[u32], first: usize, mut visit: impl FnMut(u32, Ran
     let Some(last) = row.len().checked_sub(1) else { return };
     let (own, next) = (row[..last].as_chunks::<LANES>(), row[1..].as_chunks::<LANES>());
     for (at, (own, next)) in (1..).step_by(LANES).zip(own.0.iter().zip(next.0)) {
-        let mut rest = u128::from_le_bytes(std::array::from_fn(|i| u8::from(own[i] != next[i])));
-        while rest != 0 {
-            end_at(at + rest.trailing_zeros() as usize / 8);
-            rest &= rest - 1;
-        }
+        each_one(std::array::from_fn(|i| u8::from(own[i] != next[i])), |place| end_at(at + place));
     }
     for (at, (own, next)) in (last - own.1.len() + 1..).zip(own.1.iter().zip(next.1)) {
         if own != next {

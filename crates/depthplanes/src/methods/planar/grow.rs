@@ -11,6 +11,7 @@ use super::grid::{Cell, Grid, NONE, Place};
 use super::layout::{LANES, LEVELS, SIDE, for_each_band};
 use super::pyramid::{Pyramid, propagate_down};
 use super::region::Region;
+use crate::util::bits::bits;
 use crate::util::memory::reserve_to;
 use crate::util::simd::vectorised;
 use std::array::from_fn;
@@ -169,10 +170,8 @@ impl Area<'_> {
         self.work.seeds.clear();
         for row in self.rows.clone() {
             for first in (0..grid.columns).step_by(LANES) {
-                let mut rest = self.open_from(Place::new(first, row));
-                while rest != 0 {
-                    let at = row * grid.columns + first + rest.trailing_zeros() as usize / 8;
-                    rest &= rest - 1;
+                for bit in bits(self.open_from(Place::new(first, row))) {
+                    let at = row * grid.columns + first + bit / 8;
                     if grid.roughness[at] <= 1.0 && grid.pixels(at) >= least {
                         self.work.seeds.push(u64::from(grid.scatter(at).to_bits()) << 32 | at as u64);
                     }

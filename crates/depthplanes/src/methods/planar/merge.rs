@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::limits::MAX_PLANES;
 use crate::methods::rays::{Rays, dot};
 use crate::statistics::least_squares::Moments;
+use crate::util::bits::each_one;
 use crate::util::memory::reserve_to;
 use crate::util::parallel::{for_row_blocks, map_reduce};
 use crate::util::simd::vectorised;
@@ -266,16 +267,6 @@ fn find_ends(here: &[u32], below: &[u32], first: usize) -> [[u8; LANES]; 2] {
     let right = here.get(first + 1..).and_then(|row| row.first_chunk::<LANES>()).copied();
     let right = right.unwrap_or_else(|| std::array::from_fn(|i| own[(i + 1).min(LANES - 1)]));
     [right, below].map(|beside| std::array::from_fn(|i| u8::from((own[i] != NONE) & (own[i] != beside[i]))))
-}
-
-/// Calls `visit` with the place of each that is 1.
-#[inline(always)]
-fn each_one(ones: [u8; LANES], mut visit: impl FnMut(usize)) {
-    let mut rest = u128::from_le_bytes(ones);
-    while rest != 0 {
-        visit(rest.trailing_zeros() as usize / 8);
-        rest &= rest - 1;
-    }
 }
 
 /// What edges are sorted by.

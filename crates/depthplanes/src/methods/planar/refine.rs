@@ -9,6 +9,7 @@ use super::grid::{Cell, Grid, NONE, Place};
 use super::layout::for_each_band;
 use super::pyramid::Pyramid;
 use super::region::Region;
+use crate::util::bits::each_one;
 use crate::util::memory::reserve_to;
 use crate::util::simd::vectorised;
 use std::mem::take;
@@ -93,14 +94,7 @@ impl TileRows<'_> {
         for row in rows {
             for first in (0..columns).step_by(LANES) {
                 let beside = find_beside(self.region, columns, (row - self.first) * columns + first);
-                let mut rest = u128::from_le_bytes(beside);
-                while rest != 0 {
-                    let column = first + rest.trailing_zeros() as usize / 8;
-                    rest &= rest - 1;
-                    if let Some(step) = self.refine_tile(Place::new(column, row)) {
-                        moves.push(step);
-                    }
-                }
+                each_one(beside, |at| moves.extend(self.refine_tile(Place::new(first + at, row))));
             }
         }
     }
