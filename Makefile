@@ -38,7 +38,7 @@ WASM := --manifest-path tests/wasm/Cargo.toml
 say = @printf '\n== %s\n' '$(1)'
 
 .NOTPARALLEL:
-.PHONY: help demo test lint fmt format clippy rust-tests rustdoc package targets oracles bench bench-planar ablate tables peers results golden fuzz clean
+.PHONY: help demo test lint fmt format clippy rust-tests rustdoc packages package targets oracles bench bench-planar ablate tables peers results golden fuzz clean
 
 help: ## List the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -47,7 +47,9 @@ demo: ## Build the program and run a made-up scene through it into out/demo
 	$(CARGO) build --release --package depthplanes-cli
 	"$${CARGO_TARGET_DIR:-target}"/release/depthplanes demo --out-dir out/demo
 
-test: lint rust-tests rustdoc package targets oracles ## Run every check: formatting, lints, all tests, documentation, packages, other targets, Python oracles
+# Two at a time, which does not show the figures that `make oracles` prints.
+test: ORACLE_FLAGS = --numprocesses 2
+test: lint rust-tests rustdoc packages targets oracles ## Run every check: formatting, lints, all tests, documentation, packages, other targets, Python oracles
 	$(call say,all checks passed)
 
 lint: format clippy ## Check formatting and lints, change nothing
@@ -67,15 +69,19 @@ clippy:
 
 rust-tests:
 	$(call say,tests)
-	$(CARGO) test --workspace
-	$(call say,tests of the library without threads and with serde)
-	$(CARGO) test --package depthplanes --no-default-features --features serde --lib --test serde \
-		--test grouping --test detection --test planar --test allocations
+	$(CARGO) test --workspace --features depthplanes/serde
+	$(call say,tests of the library without threads)
+	$(CARGO) test --package depthplanes --no-default-features --test grouping --test detection --test planar --test allocations
 	$(call say,tests of the readers with OpenEXR)
-	$(CARGO) test --package depthplanes-io --features exr --lib --test formats --test broken --test real_files
+	$(CARGO) test --package depthplanes-io --features exr --test formats --test broken --test real_files
 
-package:
+# All packages are made; the library's is built from what is in it, all of them by `make package`.
+packages:
 	$(call say,packages)
+	$(CARGO) package --workspace --allow-dirty --no-verify
+	$(CARGO) package --package depthplanes --allow-dirty
+
+package: ## Make the packages of all crates and build each from what is in it
 	$(CARGO) package --workspace --allow-dirty
 
 # The program has the library's name, so its own page is left out.
@@ -89,7 +95,7 @@ targets: ## Check that the library compiles for WebAssembly, 64-bit ARM and 32-b
 
 oracles: $(VENV)
 	$(call say,Python oracles)
-	$(PY) -m pytest tests/oracles
+	$(PY) -m pytest tests/oracles $(ORACLE_FLAGS)
 
 bench: $(VENV) ## Measure against cc3d and OpenCV; writes benchmarks/record/MACHINE/DATE.csv
 	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes --examples
