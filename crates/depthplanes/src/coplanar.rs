@@ -1,6 +1,6 @@
 //! Separate pieces of one geometric plane, joined: a wall on both sides of a column, table tops of one height.
 //!
-//! In: planes in metres and the runs of their pixels. Out: which of them are one plane ([`Joiner::labels`]), and the
+//! In: planes in metres and the runs of their pixels. Out: which of them are one plane (`Joiner::labels`), and the
 //! planes as they were ([`Part`]). The union is fitted anew from its pixels by the caller.
 //!
 //! Two planes are coplanar if their normals differ by at most an angle and each one's centroid lies within a distance
@@ -96,7 +96,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 /// Finds the planes that are one; reuses its memory from map to map. The time grows with the number of planes times
 /// that of unions.
 #[derive(Debug)]
-pub struct Joiner {
+pub(crate) struct Joiner {
     limits: Limits,
     unions: Vec<Union>,
     /// For each plane its union, and the next plane in it.

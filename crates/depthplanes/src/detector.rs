@@ -73,7 +73,15 @@ impl Default for Detector {
 
 impl Detector {
     /// A detector of the given method, one thread, camera unknown: `parameters` is [`crate::Planar`], [`crate::Ngaf`], or
-    /// any method by name ([`crate::methods::find`]).
+    /// any method by name ([`crate::methods::find`]), at its defaults or with other parameters.
+    ///
+    /// ```
+    /// use depthplanes::{Detector, Planar, methods};
+    /// Detector::new(Planar::default().min(500))?;
+    /// Detector::new(methods::find("ransac")?)?;
+    /// Detector::new(methods::find("ransac")?.with(&[("epsilon", 0.02)])?)?;
+    /// # Ok::<(), depthplanes::Error>(())
+    /// ```
     ///
     /// # Errors
     /// [`Error::Parameter`] if the method's parameters are out of range.

@@ -32,7 +32,7 @@
 //! | hold an answer against a truth | [`metrics`] |
 //! | make frames whose truth is known | [`scene`] |
 //! | describe the planes of another program's label image | [`describe_labels`] |
-//! | run the baselines, list all parameters | [`methods`] |
+//! | run the baselines, list all parameters | [`methods`], `Detector::new(methods::find("ransac")?)` |
 //!
 //! `examples/` has programs to copy from: `own_pixels`, `camera_loop`, `floor_height`; those of the crate `depthplanes-io`, which
 //! reads and writes files, are `detect_png`, `overlay`, `planes_to_ply`.

@@ -41,6 +41,7 @@ mod sealed {
 }
 
 /// A pixel type: `u8`, `u16` or `f32`.
+#[diagnostic::on_unimplemented(message = "`{Self}` is no pixel type", note = "pixels are `u8`, `u16` or `f32`")]
 pub trait Pixel:
     sealed::Sealed + Copy + PartialOrd + PartialEq + Send + Sync + std::fmt::Debug + Into<f64> + 'static
 {

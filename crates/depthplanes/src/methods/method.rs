@@ -45,6 +45,10 @@ impl std::fmt::Debug for Configured {
 }
 
 /// What [`crate::Detector::new`] takes: the parameters of a method. The trait is sealed.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not the parameters of a method",
+    note = "take `Planar::default()`, `Ngaf::default()`, or any method by name: `methods::find(name)?.with(&[..])?`"
+)]
 pub trait Parameters: sealed::Sealed {
     /// The method with these parameters.
     ///
@@ -59,6 +63,15 @@ pub(crate) mod sealed {
 }
 
 impl sealed::Sealed for Configured {}
+
+impl sealed::Sealed for &MethodInfo {}
+
+/// A row of the table stands for the method at its defaults.
+impl Parameters for &MethodInfo {
+    fn configured(self) -> Result<Configured> {
+        self.with(&[])
+    }
+}
 
 impl Parameters for Configured {
     fn configured(self) -> Result<Configured> {
