@@ -62,9 +62,8 @@ format:
 clippy:
 	$(call say,lints)
 	@if scripts/component clippy; then \
-		$(CARGO) clippy --workspace --all-targets -- -D warnings; \
-		$(CARGO) clippy --package depthplanes --no-default-features --all-targets -- -D warnings; \
-		$(CARGO) clippy --package depthplanes-io --features exr --all-targets -- -D warnings; \
+		$(CARGO) clippy --workspace --all-targets --features depthplanes/serde,depthplanes-io/exr -- -D warnings; \
+		$(CARGO) clippy --package depthplanes --no-default-features -- -D warnings; \
 		$(CARGO) clippy $(WASM) --target-dir "$${CARGO_TARGET_DIR:-target}" --locked -- -D warnings; fi
 
 rust-tests:
@@ -73,7 +72,7 @@ rust-tests:
 	$(call say,tests of the library without threads)
 	$(CARGO) test --package depthplanes --no-default-features --test grouping --test detection --test planar --test allocations
 	$(call say,tests of the readers with OpenEXR)
-	$(CARGO) test --package depthplanes-io --features exr --test formats --test broken --test real_files
+	$(CARGO) test --package depthplanes-io --features exr,depthplanes/serde --test formats --test broken --test real_files
 
 # All packages are made; the library's is built from what is in it, all of them by `make package`.
 packages:
