@@ -195,7 +195,12 @@ fn list(sources: &Sources, place: &str, shown: &str, item: &Item, lines: &mut BT
         Item::Type(item) => drop(lines.insert(format!("{whole} = {}", text(&item.ty)))),
         _ => (),
     }
-    for setter in sources.setters(&name) {
+    list_methods(sources, &whole, &name, lines);
+}
+
+/// Lists what is public of the `impl`s of a type of that name.
+fn list_methods(sources: &Sources, whole: &str, name: &str, lines: &mut BTreeSet<String>) {
+    for setter in sources.setters(name) {
         lines.insert(format!("{whole}::{setter}"));
     }
     for block in sources.impls() {

@@ -62,8 +62,8 @@ impl ConnectedComponents {
     ///      0, 12, 29,  0,
     /// ];
     /// let view = DepthView::new(&map, 4, 2)?;
-    /// let mut grouper = ConnectedComponents::new();
-    /// let groups = grouper.group(&view, &Connectivity::new(view.validity(), 1.0)?, 1);
+    /// let mut components = ConnectedComponents::new();
+    /// let groups = components.group(&view, &Connectivity::new(view.validity(), 1.0)?, 1);
     /// assert_eq!(groups.count(), 2);
     /// assert_eq!(groups.valid_pixels(), 6);
     /// # Ok::<(), depthplanes::Error>(())

@@ -17,9 +17,9 @@ use crate::statistics::{PlaneStatistics, Seen};
 /// Extracts planes from region images; reuses its memory.
 #[derive(Default)]
 pub(crate) struct Extraction {
-    pub(crate) grouper: ConnectedComponents,
+    pub(crate) components: ConnectedComponents,
     pub(crate) selection: Selection,
-    pub(crate) describer: PlaneStatistics,
+    pub(crate) statistics: PlaneStatistics,
 }
 
 /// What a method knows of its regions beside their pixels.
@@ -79,21 +79,21 @@ impl Extraction {
         job: &mut Job<'_>,
         out: &mut Detection,
     ) -> Result<()> {
-        let Extraction { grouper, selection, describer } = self;
+        let Extraction { components, selection, statistics } = self;
         let &Wanted { min, min_area, noise, valid_pixels } = wanted;
-        grouper.group(image, &Connectivity::new(image.validity(), 0.0)?, job.threads);
-        unite(grouper);
-        let groups = grouper.groups();
+        components.group(image, &Connectivity::new(image.validity(), 0.0)?, job.threads);
+        unite(components);
+        let groups = components.groups();
         job.done("group");
         selection.select(groups, min)?;
         job.done("select");
         let runs = selection.runs(groups);
-        describer.tally(map, runs, 0, &job.sensor, job.threads);
+        statistics.tally(map, runs, 0, &job.sensor, job.threads);
         // The noise as the residuals of all planes show it, before some of them are joined.
-        let noise = noise.map(|noise| describer.as_residuals_show(noise, &job.sensor));
+        let noise = noise.map(|noise| statistics.as_residuals_show(noise, &job.sensor));
         let seen = Seen { sensor: &job.sensor, noise: noise.as_ref(), valid_pixels };
-        describer.describe(map, runs, &seen, job.threads, &mut out.planes);
-        let mut records = Records { map, groups, margin: 0, seen, threads: job.threads, selection, describer };
+        statistics.describe(map, runs, &seen, job.threads, &mut out.planes);
+        let mut records = Records { map, groups, margin: 0, seen, threads: job.threads, selection, statistics };
         records.join(job.joiner.as_deref_mut(), out);
         if min_area > 0.0 {
             records.drop_smaller(min_area, out);
@@ -119,14 +119,14 @@ impl Extraction {
         job: &Job<'_>,
         old: Option<Curved>,
     ) -> Result<Curved> {
-        let Extraction { grouper, selection, describer } = self;
-        let groups = grouper.group(ids, &Connectivity::new(ids.validity(), 0.0)?, job.threads);
+        let Extraction { components, selection, statistics } = self;
+        let groups = components.group(ids, &Connectivity::new(ids.validity(), 0.0)?, job.threads);
         selection.select(groups, min)?;
-        describer.tally(map, selection.runs(groups), 0, &job.sensor, job.threads);
+        statistics.tally(map, selection.runs(groups), 0, &job.sensor, job.threads);
         let Curved { mut labels, mut regions } = old.unwrap_or_default();
         selection.paint(groups, &mut labels);
         regions.clear();
-        regions.extend((1..).zip(describer.tallies()).map(|(label, tally)| CurvedRegion {
+        regions.extend((1..).zip(statistics.tallies()).map(|(label, tally)| CurvedRegion {
             label,
             pixel_count: tally.pixel_count,
             bounding_box: tally.bounding_box,

@@ -18,13 +18,13 @@ pub(crate) struct Records<'a, T> {
     pub(crate) seen: Seen<'a>,
     pub(crate) threads: usize,
     pub(crate) selection: &'a mut Selection,
-    pub(crate) describer: &'a mut PlaneStatistics,
+    pub(crate) statistics: &'a mut PlaneStatistics,
 }
 
 impl<T: Pixel> Records<'_, T> {
     /// Joins coplanar planes, if that is wanted, and fits their unions anew from all pixels.
     pub(crate) fn join(&mut self, joiner: Option<&mut Joiner>, out: &mut Detection) {
-        let Records { map, groups, margin, seen, threads, selection, describer } = self;
+        let Records { map, groups, margin, seen, threads, selection, statistics } = self;
         let Some(joiner) = joiner else { return };
         let is_any_joined = joiner.join(&out.planes, selection.runs(groups));
         joiner.parts(&out.planes, &mut out.parts);
@@ -33,8 +33,8 @@ impl<T: Pixel> Records<'_, T> {
         }
         selection.relabel(|label| joiner.labels()[usize::from(label) - 1]);
         let runs = selection.runs(groups);
-        describer.tally(map, runs, *margin, seen.sensor, *threads);
-        describer.describe(map, runs, seen, *threads, &mut out.planes);
+        statistics.tally(map, runs, *margin, seen.sensor, *threads);
+        statistics.describe(map, runs, seen, *threads, &mut out.planes);
     }
 
     /// Drops planes of less than an area in square metres, and planes that are not known in metres. One that reaches

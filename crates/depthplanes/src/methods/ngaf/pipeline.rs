@@ -17,16 +17,16 @@ use crate::statistics::{PlaneStatistics, PlaneSums, Seen};
 pub(super) struct Runner {
     pub(super) params: Ngaf,
     enhancer: Enhancer,
-    grouper: ConnectedComponents,
+    components: ConnectedComponents,
     selection: Selection,
-    describer: PlaneStatistics,
+    statistics: PlaneStatistics,
 }
 
 impl Runner {
     /// The method with these parameters.
     pub(super) fn new(params: Ngaf) -> Self {
         let mut runner = Runner { params, ..Runner::default() };
-        runner.grouper.leave_out_singles(params.min >= 1);
+        runner.components.leave_out_singles(params.min >= 1);
         runner
     }
 }
@@ -56,32 +56,32 @@ impl Runner {
         out: &mut Detection,
         observer: &mut impl Observer,
     ) -> Result<()> {
-        let Runner { params, enhancer, grouper, selection, describer } = self;
+        let Runner { params, enhancer, components, selection, statistics } = self;
         let (map, filled_pixels) = match params.window {
             0 => (map, 0),
             window => enhancer.enhance(&map, window, params.passes)?, // section 3b
         };
         job.done("enhance");
         let rule = Connectivity::new(map.validity(), params.theta)?;
-        let groups = grouper.group(&map, &rule, job.threads); // section 3c
+        let groups = components.group(&map, &rule, job.threads); // section 3c
         job.done("group");
         selection.select(groups, params.min)?; // section 3d
         job.done("select");
         observer.selected(&map, groups, selection);
         let mut runs = selection.runs(groups);
-        describer.tally(&map, runs, params.margin, &job.sensor, job.threads);
-        observer.described(describer.tallies());
+        statistics.tally(&map, runs, params.margin, &job.sensor, job.threads);
+        observer.described(statistics.tallies());
         if params.has_conditions() {
-            selection.retain(groups, |index| params.accepts(&describer.tallies()[index]));
-            describer.retain(|tally| params.accepts(tally));
+            selection.retain(groups, |index| params.accepts(&statistics.tallies()[index]));
+            statistics.retain(|tally| params.accepts(tally));
             runs = selection.runs(groups);
         }
         let valid = groups.valid_pixels();
         let noise = stated_noise::<T>(&job.sensor);
         let seen = Seen { sensor: &job.sensor, noise: noise.as_ref(), valid_pixels: valid };
-        describer.describe(&map, runs, &seen, job.threads, &mut out.planes);
+        statistics.describe(&map, runs, &seen, job.threads, &mut out.planes);
         let mut records =
-            Records { map: &map, groups, margin: params.margin, seen, threads: job.threads, selection, describer };
+            Records { map: &map, groups, margin: params.margin, seen, threads: job.threads, selection, statistics };
         records.join(job.joiner.as_deref_mut(), out);
         job.done("fit");
         selection.paint(groups, &mut out.labels);

@@ -63,7 +63,7 @@ impl Source {
         })?;
         let labels = enlarge(&found.labels, &enlargement, map, image)?;
         let wanted = Wanted { min, min_area, noise: noise.as_ref(), valid_pixels: map.valid_pixels() };
-        extraction.extract_united(map, &labels, &wanted, |grouper| pieces.join(&labels, grouper), job, out)?;
+        extraction.extract_united(map, &labels, &wanted, |components| pieces.join(&labels, components), job, out)?;
         errors_of_source(found, labels, &enlargement, out);
         let old = out.curved.take();
         if let Some(curved) = &found.curved {
@@ -225,19 +225,19 @@ struct Pieces {
 }
 
 impl Pieces {
-    fn join(&mut self, labels: &DepthView<'_, u16>, grouper: &mut ConnectedComponents) {
+    fn join(&mut self, labels: &DepthView<'_, u16>, components: &mut ConnectedComponents) {
         let Pieces { pairs, first } = self;
         reserve_to(pairs, labels.area());
         first.clear();
         first.resize(usize::from(u16::MAX) + 1, None);
-        grouper.groups().each_run(|Run { v, u_first, group, .. }| {
+        components.groups().each_run(|Run { v, u_first, group, .. }| {
             let label = labels.row(v as usize)[u_first as usize];
             let first = *first[usize::from(label)].get_or_insert(group);
             if first != group && pairs.last() != Some(&[first, group]) {
                 pairs.push([first, group]);
             }
         });
-        grouper.unite(pairs);
+        components.unite(pairs);
     }
 }
 
@@ -360,13 +360,13 @@ mod tests {
             2, 0, 0, 0, 1, 1, //
         ];
         let view = DepthView::new(&labels, 6, 4).unwrap().valid_range(1, u16::MAX).unwrap();
-        let mut grouper = ConnectedComponents::default();
+        let mut components = ConnectedComponents::default();
         let mut pieces = Pieces::default();
         for _ in 0..2 {
-            grouper.group(&view, &Connectivity::new(view.validity(), 0.0).unwrap(), 1);
-            assert_eq!(grouper.groups().count(), 6);
-            pieces.join(&view, &mut grouper);
-            assert_eq!(grouper.groups().sizes(), [5, 4, 2]);
+            components.group(&view, &Connectivity::new(view.validity(), 0.0).unwrap(), 1);
+            assert_eq!(components.groups().count(), 6);
+            pieces.join(&view, &mut components);
+            assert_eq!(components.groups().sizes(), [5, 4, 2]);
         }
     }
 

@@ -6,7 +6,7 @@
 use super::grow::fewest;
 use super::parameters::Planar;
 use super::pipeline::{Checkpoint, Runner};
-use super::trace::{Fate, Trace, label_of};
+use super::trace::{Fate, Trace};
 use crate::detection::Detection;
 use crate::error::Result;
 use crate::explanation::{Explanation, Limit, Verdict};
@@ -84,7 +84,7 @@ fn verdict(trace: &Trace, run: &Runner, out: &Detection) -> Verdict {
         (Fate::EdgeOn, _) => Verdict::EdgeOn,
         (Fate::None, _) if pixels < least => Verdict::Sparse { pixels: pixels as usize, least: least as usize },
         (_, Some(near)) if near.off <= MOST_INLIER_THRESHOLD.max(2.0 * trace.most) || trace.fate != Fate::None => {
-            Verdict::Off { off: near.off, most: trace.most, label: label_of(run, out, near.id) }
+            Verdict::Off { off: near.off, most: trace.most, label: run.label_of(out, near.id) }
         }
         _ if roughness > 1.0 => Verdict::Uneven { roughness },
         _ => Verdict::Alone,

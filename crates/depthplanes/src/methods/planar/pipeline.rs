@@ -295,4 +295,16 @@ impl Runner {
         join_facets(&regions.all, &merger.edges, noise, facet_surfaces, image, pyramid.grids[0].len());
         extraction.extract_curved(map, &of_image(image, affine)?, params.min, job, old)
     }
+
+    /// The label that most of a region's pixels have, 0 for none.
+    pub(super) fn label_of(&self, out: &Detection, id: u32) -> u16 {
+        let own_label = self.contacts.label(id);
+        let mut counts = vec![0u32; out.planes.len() + 1];
+        for (ids, labels) in self.image.chunks_exact(self.affine.stride).zip(out.labels.chunks_exact(out.width)) {
+            let own = ids.iter().zip(labels).filter(|(own, label)| **own == own_label && **label > 0);
+            own.for_each(|(_, &label)| counts[usize::from(label)] += 1);
+        }
+        let best = (0..counts.len()).rev().max_by_key(|&label| counts[label]).filter(|&label| counts[label] > 0);
+        best.unwrap_or(0) as u16
+    }
 }

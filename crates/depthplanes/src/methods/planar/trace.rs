@@ -353,7 +353,7 @@ impl Trace {
             self.findings.push(Finding::new("assign", "the pixel", "no region within a block of 8 x 8").refusing(true));
         }
         for against in &self.against {
-            let label = label_of(run, out, against.id);
+            let label = run.label_of(out, against.id);
             let name = match against.is_curved {
                 true => format!("a curved facet of {} pixels", against.pixels),
                 false => named(label, against.pixels),
@@ -374,7 +374,7 @@ impl Trace {
 
     /// What became of its connected piece.
     fn conclude_piece(&mut self, run: &Runner) {
-        let groups = run.extraction.grouper.groups();
+        let groups = run.extraction.components.groups();
         self.piece = groups.sizes()[groups.at(self.at) as usize] as usize;
         self.is_large = self.piece > run.params.min as usize;
         let outcome = if self.is_large { "large enough" } else { "too small" };
@@ -387,18 +387,6 @@ impl Trace {
 /// A region in words, by the label of its plane, 0 for none.
 fn named(label: u16, pixels: f64) -> String {
     if label > 0 { format!("plane {label}") } else { format!("a region of {pixels} pixels") }
-}
-
-/// The label that most of a region's pixels have, 0 for none.
-pub(super) fn label_of(run: &Runner, out: &Detection, id: u32) -> u16 {
-    let own_label = run.contacts.label(id);
-    let mut counts = vec![0u32; out.planes.len() + 1];
-    for (ids, labels) in run.image.chunks_exact(run.affine.stride).zip(out.labels.chunks_exact(out.width)) {
-        let own = ids.iter().zip(labels).filter(|(own, label)| **own == own_label && **label > 0);
-        own.for_each(|(_, &label)| counts[usize::from(label)] += 1);
-    }
-    let best = (0..counts.len()).rev().max_by_key(|&label| counts[label]).filter(|&label| counts[label] > 0);
-    best.unwrap_or(0) as u16
 }
 
 #[cfg(test)]
@@ -515,6 +503,6 @@ mod tests {
             planes: (1..4).map(plane).collect(),
             ..Detection::default()
         };
-        assert_eq!([0, 1, 2].map(|id| label_of(run, &out, id)), [3, 2, 0]);
+        assert_eq!([0, 1, 2].map(|id| run.label_of(&out, id)), [3, 2, 0]);
     }
 }
