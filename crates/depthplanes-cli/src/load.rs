@@ -8,7 +8,7 @@ use depthplanes::scene::{ScenePixels, Spec};
 use depthplanes_io::camera_file::read_camera;
 use depthplanes_io::encoding::Stereo;
 use depthplanes_io::formats::{DecodeOptions, Limits};
-use depthplanes_io::{Frame, Pixels, ReadOptions};
+use depthplanes_io::{Frame, Pixels, Provenance, ReadOptions};
 use std::io::Read;
 
 /// The flags as the reading library takes them; reads the camera file.
@@ -26,6 +26,8 @@ pub(crate) fn options(reading: &Reading) -> Outcome<ReadOptions> {
         preset: reading.preset.clone(),
         encoding: reading.encoding.clone(),
         scale: reading.scale,
+        depth_scale: reading.depth_scale,
+        ray_distance: reading.ray_distance,
         disparity: reading.disparity,
         swap_bytes: reading.swap_bytes,
         missing: reading.missing,
@@ -107,6 +109,7 @@ pub(crate) fn scene(spec: &str) -> Outcome<Frame> {
         sensor: scene.sensor,
         format: "scene",
         encoding: "scene",
+        provenance: Provenance { encoding: "a synthetic scene knows its own".into(), ..Provenance::default() },
         warnings: Vec::new(),
     })
 }

@@ -3,7 +3,7 @@
 use crate::table::{Align, aligned, row};
 use depthplanes::detection::Curved;
 use depthplanes::{Detection, Measure, Plane};
-use depthplanes_io::outputs::{Report, Times};
+use depthplanes_io::outputs::{Report, Times, noise_in_words};
 
 /// One line on the frame, one on the method and what it found, one on the time if it was measured.
 pub(crate) fn summary(report: &Report<'_>) -> String {
@@ -29,7 +29,7 @@ pub(crate) fn summary(report: &Report<'_>) -> String {
     };
     let whole = if detection.filled_pixels > 0 { "valid and filled pixels" } else { "valid pixels" };
     let share = percent(detection.labelled_share());
-    text += &format!("{} ({}): {planes}{joined} on {share} of the {whole}\n", report.method.name, parameters(report));
+    text += &format!("{}: {planes}{joined} on {share} of the {whole}\n", method(report));
     if let Some(curved) = &detection.curved {
         text += &surfaces(curved, detection);
     }
@@ -57,12 +57,16 @@ fn meaning(measure: Measure) -> String {
     }
 }
 
-/// The parameters of the method's paper, and our additions where they are used.
-fn parameters(report: &Report<'_>) -> String {
+/// The method as it ran: the parameters of its paper, our additions where they are used, and where its noise is from.
+fn method(report: &Report<'_>) -> String {
     let all = report.method.params.iter().zip(report.parameters);
     let told = all.filter(|(param, value)| param.source.is_some() || **value != param.default);
     let pairs: Vec<String> = told.map(|(param, value)| format!("{} {value}", param.name)).collect();
-    if pairs.is_empty() { "defaults".into() } else { pairs.join(", ") }
+    let mut text = report.method.name.to_string();
+    if !pairs.is_empty() {
+        text += &format!(" ({})", pairs.join(", "));
+    }
+    text + &noise_in_words(report).map(|noise| format!(", {noise}")).unwrap_or_default()
 }
 
 fn time(times: &Times) -> String {
@@ -143,9 +147,9 @@ pub(crate) fn advice(report: &Report<'_>) -> Vec<String> {
     let mut notes = Vec::new();
     if detection.planes.is_empty() {
         notes.push(format!(
-            "{source}: no plane found by {name} ({}); `depthplanes params {name}` says what its parameters do, \
+            "{source}: no plane found by {}; `depthplanes params {name}` says what its parameters do, \
              `depthplanes explain` why a pixel has no plane, `depthplanes inspect` shows the map's values",
-            parameters(report),
+            method(report),
             name = report.method.name
         ));
     }

@@ -8,7 +8,7 @@ use depthplanes::methods::{self, MethodInfo};
 use depthplanes::scene::{ScenePixels, Spec};
 use depthplanes::{DepthView, Detection, Detector};
 use depthplanes_io::outputs::{OUTPUTS, Report};
-use depthplanes_io::{Frame, Pixels};
+use depthplanes_io::{Frame, Pixels, Provenance};
 use std::path::{Path, PathBuf};
 use support::Bench;
 
@@ -77,6 +77,7 @@ fn the_stages_of_ngaf_look_as_the_page_shows_them() {
         sensor: scene.sensor,
         format: "scene",
         encoding: "scene",
+        provenance: Provenance::default(),
         warnings: Vec::new(),
     };
     let mut nothing = found.clone();
@@ -126,6 +127,7 @@ fn overlay(method: &'static MethodInfo, frame: &Frame, detection: &Detection) ->
         outlines: None,
         times: None,
         legend: false,
+        notes: &[],
     };
     let output = OUTPUTS.iter().find(|output| output.name == "overlay").unwrap();
     (output.writer(Path::new("a.png")).unwrap().encode)(&report).unwrap()

@@ -5,8 +5,8 @@
 //! numbers that are in the file, because the paper's threshold counts grey levels.
 //!
 //! Without a stated encoding [`likely`] decides by the sample type:
-//! PFM -> `middlebury`, float -> `metre` (or `millimetre` if the median is above 100), 16-bit ->
-//! `millimetre`, 8-bit -> `grey`. It never guesses a bit packing; the traps of
+//! PFM -> `middlebury` (or `millimetre` if the median is above the number of columns), float -> `metre` (or `millimetre`
+//! if the median is above 100), 16-bit -> `millimetre`, 8-bit -> `grey`. It never guesses a bit packing; the traps of
 //! [`crate::inspect`] say when the numbers look like one.
 
 use depthplanes::Measure;
@@ -14,17 +14,7 @@ use depthplanes::Measure;
 use crate::error::{Error, Result};
 use crate::formats::Image;
 use crate::frame::Pixels;
-
-/// A rectified stereo rig, for `z = focal_px * baseline_m / (disparity + doffs_px)`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stereo {
-    /// Focal length, pixels.
-    pub focal_px: f64,
-    /// Distance of the two cameras, metres.
-    pub baseline_m: f64,
-    /// Difference of the two principal points, pixels; 0 for most rigs.
-    pub doffs_px: f64,
-}
+pub use crate::stereo::Stereo;
 
 /// What the user says beside the encoding's name.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -111,10 +101,10 @@ pub const ENCODINGS: &[Encoding] = &[
     Encoding {
         name: "realsense",
         aliases: &["z16"],
-        about: "RealSense Z16: depth in the camera's depth units",
+        about: "RealSense Z16: depth in the camera's depth units; state what its get_depth_scale says as --depth-scale",
         unit: "depth unit",
-        scale: "metres per map unit as the camera's get_depth_scale states it, 0.001",
-        apply: |image, given| depth(image, 1.0 / given.scale.unwrap_or(0.001)),
+        scale: "map units per metre, 1000",
+        apply: |image, given| depth(image, given.scale.unwrap_or(1000.0)),
         ..DEPTH
     },
     Encoding {
@@ -165,6 +155,15 @@ pub const ENCODINGS: &[Encoding] = &[
         ..DISPARITY
     },
     Encoding {
+        name: "inverse-depth",
+        aliases: &["inverse", "relative"],
+        about: "inverse depth, large values near: MiDaS, Depth Anything and other networks; metric with a scale",
+        unit: "1/m times scale",
+        scale: "map units in 1/m; without it the scale is unknown, and there are no metres",
+        apply: inverse_depth,
+        ..DEPTH
+    },
+    Encoding {
         name: "grey",
         aliases: &["gray"],
         about: "grey levels of unknown unit: planes in pixels, no metres",
@@ -187,9 +186,17 @@ pub fn by_name(name: &str) -> Result<&'static Encoding> {
 }
 
 /// The encoding to assume when none is stated, and why; the rule stands in the module header.
-/// `disparity` says that the numbers are known to be disparities.
-pub fn likely(pixels: &Pixels, format: &str, disparity: bool) -> (&'static Encoding, String) {
+/// `width` is the number of columns; `disparity` says that the numbers are known to be disparities.
+pub fn likely(pixels: &Pixels, width: usize, format: &str, disparity: bool) -> (&'static Encoding, String) {
     let (name, why) = match pixels {
+        Pixels::F32(_) if format == "pcd" => ("metre", "PCD files hold metres".to_string()),
+        Pixels::F32(values) if format == "pfm" && !disparity => match typical(values) {
+            // A disparity is at most the width of the picture.
+            Some(median) if f64::from(median) > width as f64 => {
+                ("millimetre", format!("the median {median} is no disparity in {width} columns"))
+            }
+            _ => ("middlebury", "PFM files hold disparity in pixels".to_string()),
+        },
         Pixels::F32(_) if format == "pfm" => ("middlebury", "PFM files hold disparity in pixels".to_string()),
         Pixels::F32(_) if disparity => ("disparity", "float disparity is in pixels".to_string()),
         Pixels::U8(_) if disparity => ("middlebury", "8-bit disparity has a scale of its data set".to_string()),
@@ -208,7 +215,7 @@ pub fn likely(pixels: &Pixels, format: &str, disparity: bool) -> (&'static Encod
 }
 
 /// The median of at most 4096 positive values.
-fn typical(values: &[f32]) -> Option<f32> {
+pub(crate) fn typical(values: &[f32]) -> Option<f32> {
     let step = values.len() / 4096 + 1;
     let mut sample: Vec<f32> = values.iter().step_by(step).copied().filter(|z| *z > 0.0 && z.is_finite()).collect();
     sample.sort_by(f32::total_cmp);
@@ -232,6 +239,15 @@ fn disparity(image: &Image, given: &Given, units_per_pixel: f64) -> Result<Meani
         None => (Measure::Disparity, 0.0),
     };
     Ok(Meaning { measure, valid_range: float_range(image, lowest) })
+}
+
+/// Relative, as networks give it, unless the scale is stated.
+fn inverse_depth(image: &mut Image, given: &Given) -> Result<Meaning> {
+    let measure = match given.scale {
+        Some(scale) => Measure::InverseDepth { slope: 1.0 / positive_scale(scale)?, offset: 0.0 },
+        None => Measure::Disparity,
+    };
+    Ok(Meaning { measure, valid_range: float_range(image, 0.0) })
 }
 
 fn middlebury(image: &mut Image, given: &Given) -> Result<Meaning> {

@@ -2,6 +2,8 @@
 
 use depthplanes::{AnyView, DepthView, Sensor};
 
+use crate::stereo::Stereo;
+
 /// The pixels of a frame, row by row, top row first.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Pixels {
@@ -11,6 +13,18 @@ pub enum Pixels {
     U16(Vec<u16>),
     /// Floating-point values.
     F32(Vec<f32>),
+}
+
+impl Pixels {
+    /// Number of pixels.
+    #[expect(clippy::len_without_is_empty, reason = "a map has pixels")]
+    pub fn len(&self) -> usize {
+        match self {
+            Pixels::U8(values) => values.len(),
+            Pixels::U16(values) => values.len(),
+            Pixels::F32(values) => values.len(),
+        }
+    }
 }
 
 /// A depth or disparity map read from a file. Integer maps keep the numbers that are in the file
@@ -33,8 +47,38 @@ pub struct Frame {
     pub format: &'static str,
     /// Name of the encoding ([`crate::encoding::ENCODINGS`]).
     pub encoding: &'static str,
+    /// Who said so, and what was stated beside the file.
+    pub provenance: Provenance,
     /// What a person should know of this file: suspicious numbers, channels dropped.
     pub warnings: Vec<String>,
+}
+
+/// Where the meaning of a map's numbers comes from, so that a result can be made again and a wrong one traced.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Provenance {
+    /// Why the encoding is what it is: `stated`, the preset, or what the map looks like.
+    pub encoding: String,
+    /// The sensor preset in use.
+    pub preset: Option<&'static str>,
+    /// The encoding's scale, if one was stated.
+    pub scale: Option<f64>,
+    /// The stereo rig, if one was stated.
+    pub stereo: Option<Stereo>,
+    /// Who stated the noise of single pixels; nobody if the sensor has none.
+    pub noise: Option<Source>,
+    /// Who stated the smooth part of the noise.
+    pub smooth_noise: Option<Source>,
+    /// Whether the values were distances along the rays and were turned into depth.
+    pub ray_distance: bool,
+}
+
+/// Who stated something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The user.
+    Stated,
+    /// The sensor preset.
+    Preset,
 }
 
 impl Frame {

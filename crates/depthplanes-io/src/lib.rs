@@ -5,6 +5,8 @@
 #![forbid(unsafe_code)]
 
 pub mod camera_file;
+mod choice;
+mod doubts;
 pub mod encoding;
 pub mod error;
 mod file_bytes;
@@ -15,10 +17,14 @@ pub mod labels;
 pub mod noise_table;
 pub mod outputs;
 pub mod presets;
+mod ray_distance;
 pub mod read;
+mod stereo;
+mod traps;
 
+pub use doubts::doubts;
 pub use error::{Error, Result};
-pub use frame::{Frame, Pixels};
+pub use frame::{Frame, Pixels, Provenance, Source};
 pub use labels::{LabelImage, read_labels};
 pub use noise_table::read_noise_table;
 pub use read::{ReadOptions, decode, read};

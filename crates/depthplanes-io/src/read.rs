@@ -8,13 +8,16 @@ use depthplanes::noise::{NoiseModel, SensorNoise};
 use depthplanes::{Intrinsics, Sensor};
 
 use crate::camera_file::CameraFile;
-use crate::encoding::{self, Given, Meaning, Stereo};
+use crate::choice::{Choice, choose};
+use crate::encoding::{Encoding, Given, Meaning, Stereo};
 use crate::error::{Error, Result};
 use crate::file_bytes::read_bytes;
 use crate::formats::{self, DecodeOptions, Image};
-use crate::frame::{Frame, Pixels};
-use crate::inspect;
+use crate::frame::{Frame, Pixels, Provenance, Source};
 use crate::presets::{self, PresetNoise, SensorPreset};
+use crate::ray_distance;
+use crate::traps::missing::not_measured;
+use crate::traps::traps;
 
 /// What the user says of a map beside its bytes. The default says nothing.
 ///
@@ -32,10 +35,14 @@ pub struct ReadOptions {
     pub decode: DecodeOptions,
     /// A row of [`presets::SENSOR_PRESETS`].
     pub preset: Option<String>,
-    /// A row of [`encoding::ENCODINGS`].
+    /// A row of [`crate::encoding::ENCODINGS`].
     pub encoding: Option<String>,
-    /// The encoding's scale; what it counts is [`encoding::Encoding::scale`].
+    /// The encoding's scale; what it counts is [`Encoding::scale`].
     pub scale: Option<f64>,
+    /// Metres of a map unit, as cameras state it ("depth scale"); of maps of depth, instead of `scale`.
+    pub depth_scale: Option<f64>,
+    /// The values are distances along the rays, not depths along the optical axis; needs the camera.
+    pub ray_distance: bool,
     /// The numbers are disparities; settles the guess when no encoding is stated.
     pub disparity: bool,
     /// Swap the two bytes of 16-bit samples.
@@ -92,23 +99,27 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
     if options.swap_bytes {
         swap_bytes(&mut image)?;
     }
-    let stated = options.encoding.as_deref().or(preset.map(|preset| preset.encoding));
-    let encoding = match stated {
-        Some(name) => encoding::by_name(name)?,
-        None => encoding::likely(&image.pixels, format.name, options.disparity || options.stereo.is_some()).0,
-    };
+    let disparity = options.disparity || options.stereo.is_some();
+    let Choice { encoding, why, note } = choose(&image, format.name, options.encoding.as_deref(), disparity, preset)?;
+    image.warnings.extend(note);
     if options.disparity && !encoding.disparity {
         let accepted = "an encoding of disparity (disparity, kitti, middlebury), or leave --disparity out";
         return Err(Error::parameter("--encoding", encoding.name, accepted));
     }
-    let meaning = (encoding.apply)(&mut image, &Given { scale: options.scale, stereo: options.stereo })?;
+    let scale = scale(options, encoding)?;
+    let meaning = (encoding.apply)(&mut image, &Given { scale, stereo: options.stereo })?;
     let intrinsics = camera(options, preset, &mut image)?;
     let of_preset = |part: fn(&SensorPreset) -> Option<PresetNoise>| part(preset?)?.of();
     let missing = missing(options, &image)?.or(preset.and_then(|preset| preset.missing)).or(encoding.missing);
+    let missing = missing.filter(|value| storable(&image.pixels, *value)).or_else(|| {
+        let (value, note) = not_measured(&image.pixels, meaning.measure).filter(|_| options.valid_range.is_none())?;
+        image.warnings.push(note);
+        Some(value)
+    });
     let mut frame = Frame {
         width: image.width,
         height: image.height,
-        missing: missing.filter(|value| storable(&image.pixels, *value)),
+        missing,
         pixels: image.pixels,
         valid_range: options.valid_range.or(meaning.valid_range),
         sensor: Sensor::default()
@@ -118,14 +129,43 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
             .smooth_noise(noise(options.smooth_noise, of_preset(|preset| preset.smooth_noise), &meaning)?),
         format: format.name,
         encoding: encoding.name,
+        provenance: Provenance {
+            encoding: why,
+            preset: preset.map(|preset| preset.name),
+            scale,
+            stereo: options.stereo.filter(|_| encoding.disparity),
+            noise: source(options.noise, preset.and_then(|preset| preset.noise)),
+            smooth_noise: source(options.smooth_noise, preset.and_then(|preset| preset.smooth_noise)),
+            ray_distance: options.ray_distance,
+        },
         warnings: image.warnings,
     };
     frame.view()?; // What the library would refuse later is refused here, with the file's name.
-    if stated.is_none() {
-        let traps = inspect::quick_traps(&frame);
-        frame.warnings.extend(traps);
+    if options.ray_distance {
+        ray_distance::to_depth(&mut frame)?;
     }
+    let traps = traps(&frame);
+    frame.warnings.extend(traps);
     Ok(frame)
+}
+
+/// The encoding's scale, as it was stated or by the device's depth scale.
+fn scale(options: &ReadOptions, encoding: &Encoding) -> Result<Option<f64>> {
+    let Some(depth_scale) = options.depth_scale else { return Ok(options.scale) };
+    if options.scale.is_some() {
+        let accepted = "either of the two: --scale counts map units per metre, --depth-scale metres per map unit";
+        return Err(Error::parameter("--depth-scale", depth_scale, format!("not together with --scale; {accepted}")));
+    }
+    if encoding.disparity || encoding.scale.is_empty() {
+        let accepted = format!("a map of depth; the encoding `{}` has another unit", encoding.name);
+        return Err(Error::parameter("--depth-scale", depth_scale, accepted));
+    }
+    Ok(Some(1.0 / depth_scale))
+}
+
+/// Who stated a part of the noise.
+fn source(stated: Option<SensorNoise>, of_preset: Option<PresetNoise>) -> Option<Source> {
+    stated.map(|_| Source::Stated).or(of_preset.map(|_| Source::Preset))
 }
 
 /// Whether a pixel can be `value` at all.

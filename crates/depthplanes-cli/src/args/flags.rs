@@ -14,6 +14,8 @@ pub(crate) struct Reading {
     pub(crate) encoding: Option<String>,
     pub(crate) preset: Option<String>,
     pub(crate) scale: Option<f64>,
+    pub(crate) depth_scale: Option<f64>,
+    pub(crate) ray_distance: bool,
     pub(crate) intrinsics: Option<[f64; 4]>,
     pub(crate) camera: Option<PathBuf>,
     pub(crate) disparity: bool,
@@ -49,6 +51,8 @@ impl Reading {
             encoding: text("encoding"),
             preset: text("preset"),
             scale: number("scale"),
+            depth_scale: number("depth-scale"),
+            ray_distance: matches.get_flag("ray-distance"),
             intrinsics: matches.get_one("intrinsics").copied(),
             camera: matches.get_one("camera").cloned(),
             disparity: matches.get_flag("disparity"),
@@ -83,6 +87,13 @@ pub(super) fn reading() -> Vec<Arg> {
             .help("Encoding and camera of a known sensor; `depthplanes presets` lists the names"),
         number("scale", "UNITS_PER_METRE")
             .help("Map units in a metre, or what `depthplanes encodings` states as the encoding's scale"),
+        number("depth-scale", "METRES").help(
+            "Metres of a map unit, as cameras state their depth scale (RealSense: get_depth_scale); instead of --scale",
+        ),
+        switch(
+            "ray-distance",
+            "The values are distances along the rays, not depths: they are turned into depth; needs a camera",
+        ),
         numbers::<4>("intrinsics", "FX,FY,CX,CY").help("Focal lengths and principal point, pixels"),
         path("camera", "FILE").help("Camera file: ROS, Open3D, BOP, KITTI, Middlebury and others"),
         switch("disparity", "The numbers are disparities; with --focal and --baseline they become metric"),

@@ -29,6 +29,7 @@ pub(super) fn run(folder: &Path, out: &mut dyn Write) -> Outcome {
         outlines: None,
         times: None,
         legend: true,
+        notes: &[],
     };
     make_folder(folder)?;
     let depth = folder.join("depth.png");

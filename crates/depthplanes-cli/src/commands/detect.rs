@@ -8,7 +8,7 @@ use crate::run::{Recipe, Runner};
 use crate::{load, pool, show};
 use depthplanes::noise::SensorNoise;
 use depthplanes_io::outputs::{self, OUTPUTS, Output, Report};
-use depthplanes_io::{ReadOptions, read_noise_table};
+use depthplanes_io::{ReadOptions, doubts, read_noise_table};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -69,9 +69,13 @@ impl Plan<'_> {
             outlines: found.outlines.as_ref(),
             times: found.times.as_ref(),
             legend: self.wanted.legend,
+            notes: &[],
         };
+        let doubts = doubts(&report);
+        let report = Report { notes: &doubts, ..report };
         let written = write(self.wanted, input, &report)?;
-        let mut notes: Vec<String> = frame.warnings.iter().map(|warning| format!("{name}: {warning}")).collect();
+        let told = frame.warnings.iter().chain(&doubts);
+        let mut notes: Vec<String> = told.map(|warning| format!("{name}: {warning}")).collect();
         if self.wanted.json {
             return Ok(Done { text: json(&report, self.alone), notes });
         }

@@ -79,6 +79,8 @@ pub struct Report<'a> {
     pub times: Option<&'a Times>,
     /// Whether pictures carry a legend.
     pub legend: bool,
+    /// What a person should know of the result, beside the frame's warnings ([`crate::doubts`]).
+    pub notes: &'a [String],
 }
 
 impl Report<'_> {

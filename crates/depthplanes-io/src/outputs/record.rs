@@ -1,5 +1,6 @@
 //! The frame's record as it stands in JSON; docs/planes-schema.md describes each field.
 
+use super::noise::NoiseRecord;
 use super::outline::OutlineRecord;
 use super::output::Report;
 use super::times::{Spread, Times};
@@ -19,17 +20,21 @@ pub(super) struct FrameRecord<'a> {
     source: &'a str,
     format: &'static str,
     encoding: &'static str,
+    encoding_from: &'a str,
+    preset: Option<&'static str>,
+    ray_distance: bool,
     width: usize,
     height: usize,
     measure: MeasureRecord,
     intrinsics: Option<IntrinsicsRecord>,
     method: &'static str,
     parameters: Map<String, Value>,
+    noise: Option<NoiseRecord>,
     valid_pixels: usize,
     filled_pixels: usize,
     labelled_pixels: usize,
     labelled_share: f64,
-    warnings: &'a [String],
+    warnings: Vec<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     merge_coplanar: Option<CoplanarRecord>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -121,17 +126,21 @@ impl<'a> From<&Report<'a>> for FrameRecord<'a> {
             source: report.source,
             format: frame.format,
             encoding: frame.encoding,
+            encoding_from: &frame.provenance.encoding,
+            preset: frame.provenance.preset,
+            ray_distance: frame.provenance.ray_distance,
             width: frame.width,
             height: frame.height,
             measure: frame.sensor.measure.into(),
             intrinsics: frame.sensor.intrinsics.map(IntrinsicsRecord::from),
             method: report.method.name,
             parameters: parameters(report),
+            noise: NoiseRecord::of(report),
             valid_pixels: detection.valid_pixels,
             filled_pixels: detection.filled_pixels,
             labelled_pixels: detection.labelled_pixels(),
             labelled_share: detection.labelled_share(),
-            warnings: &frame.warnings,
+            warnings: frame.warnings.iter().chain(report.notes).map(String::as_str).collect(),
             merge_coplanar: report.coplanar.map(CoplanarRecord::from),
             outline_tolerance_px: report.outlines.map(|outlines| outlines.tolerance_px()),
             time_ms: report.times.map(times),

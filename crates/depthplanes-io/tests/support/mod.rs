@@ -3,7 +3,7 @@
 use depthplanes::detection::{Detection, MapFit, MetricPlane, PixelBox, Plane};
 use depthplanes::{Hessian, Intrinsics, Measure, Sensor};
 use depthplanes_io::outputs::Report;
-use depthplanes_io::{Frame, Pixels};
+use depthplanes_io::{Frame, Pixels, Provenance};
 use std::path::PathBuf;
 
 pub const WIDTH: usize = 48;
@@ -31,6 +31,7 @@ pub fn frame() -> Frame {
         })),
         format: "png",
         encoding: "mm",
+        provenance: Provenance { encoding: "stated".into(), ..Provenance::default() },
         warnings: vec!["made by hand".into()],
     }
 }
@@ -84,6 +85,7 @@ pub fn report<'a>(frame: &'a Frame, detection: &'a Detection) -> Report<'a> {
         outlines: None,
         times: None,
         legend: false,
+        notes: &[],
     }
 }
 

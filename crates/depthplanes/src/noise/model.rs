@@ -7,6 +7,7 @@ use super::rounding::{Rounding, steady};
 use super::sensor_noise::SensorNoise;
 use super::space::Space;
 use crate::camera::Measure;
+use crate::detection::ExpectedNoise;
 
 /// Variance of one pixel's q: the sensor's own error and the rounding of its values.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,6 +120,18 @@ impl NoiseModel {
     /// Standard deviation of the smooth part of q.
     pub(crate) fn smooth_sigma(&self, q: f64) -> f64 {
         self.sigma_by(&self.smooth, q)
+    }
+
+    /// What is expected, for the record.
+    pub(crate) fn expected(&self) -> ExpectedNoise {
+        let has_smooth = self.is_smooth_shown || !self.smooth.is_zero();
+        ExpectedNoise {
+            white: self.noise,
+            white_is_estimated: self.is_scatter,
+            smooth: has_smooth.then_some(self.smooth),
+            smooth_is_estimated: self.is_smooth_shown,
+            lateral_noise_px: self.ray,
+        }
     }
 
     /// Lateral error of a pixel's direction, pixels, one standard deviation. It is no part of

@@ -35,6 +35,11 @@ impl SensorNoise {
         }
     }
 
+    /// Whether there is none.
+    pub(crate) fn is_zero(&self) -> bool {
+        matches!(self, SensorNoise::Depth { base: 0.0, growth: 0.0 } | SensorNoise::Value { sigma: 0.0 })
+    }
+
     /// This noise with standard deviations `factor` times as large.
     pub(crate) fn times(self, factor: f64) -> Self {
         match self {

@@ -87,6 +87,7 @@ impl Runner {
         selection.paint(groups, &mut out.labels);
         (out.width, out.height) = (map.width(), map.height());
         (out.valid_pixels, out.filled_pixels) = (valid - filled_pixels, filled_pixels);
+        out.noise = None; // No threshold depends on it.
         job.done("label");
         Ok(())
     }

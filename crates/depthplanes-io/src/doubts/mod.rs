@@ -1,0 +1,13 @@
+//! Results that nobody should take for granted: what the planes say of how the map was read.
+//!
+//! In: a [`Report`]. Out: notes, each with the flag to try. What can be seen before is a trap ([`crate::traps`]).
+
+mod planes;
+mod reading;
+
+use crate::outputs::Report;
+
+/// What a person should know of a result.
+pub fn doubts(report: &Report<'_>) -> Vec<String> {
+    [planes::out_of_sight(report), planes::huge(report), reading::better(report)].into_iter().flatten().collect()
+}

@@ -1,0 +1,53 @@
+//! Planes that no camera sees.
+
+use depthplanes::Plane;
+use depthplanes::detection::MetricPlane;
+
+use crate::outputs::Report;
+use crate::traps::{doubt_of_depth, length};
+
+/// The largest plane that a camera may see, m2: a field of 100 m x 100 m.
+const LARGEST_M2: f64 = 1e4;
+
+/// A plane nearer or farther than cameras see.
+pub(super) fn out_of_sight(report: &Report<'_>) -> Option<String> {
+    let depth = |metric: &MetricPlane| metric.centroid_m[2];
+    let doubt = |plane: &Plane| {
+        let depth_m = depth(plane.metric.as_ref()?);
+        Some((plane.label, depth_m, doubt_of_depth(report.frame, depth_m)?))
+    };
+    let odd: Vec<_> = report.detection.planes.iter().filter_map(doubt).collect();
+    let (label, depth_m, remedy) = odd.first()?;
+    if report.frame.warnings.iter().any(|warning| warning.contains(remedy)) {
+        return None; // It was told of the whole map.
+    }
+    let others = match odd.len() {
+        1 => String::new(),
+        count => format!(" and {} more planes do so", count - 1),
+    };
+    // One odd plane among others is a background; if all are odd it is the unit.
+    let remedy = if odd.len() * 2 > report.detection.planes.len() || *depth_m < 1.0 {
+        remedy.clone()
+    } else {
+        "a background rather than a surface? try --valid-range or --missing".into()
+    };
+    Some(format!("plane {label} lies at a depth of {}{others}, where no camera sees: {remedy}", length(*depth_m)))
+}
+
+/// A plane larger than cameras see.
+pub(super) fn huge(report: &Report<'_>) -> Option<String> {
+    let area = |plane: &Plane| plane.metric.as_ref()?.area_m2;
+    let plane = report.detection.planes.iter().find(|plane| area(plane).is_some_and(|area| area > LARGEST_M2))?;
+    let within =
+        plane.metric.as_ref().is_some_and(|metric| doubt_of_depth(report.frame, metric.centroid_m[2]).is_none());
+    within.then(|| {
+        let area = area(plane).unwrap_or_default();
+        let camera = report.frame.sensor.intrinsics.map_or(String::new(), |camera| {
+            format!(" (fx {}, fy {}, {} x {} pixels)", camera.fx, camera.fy, report.frame.width, report.frame.height)
+        });
+        format!(
+            "plane {} has {area:.1e} m2, more than a camera sees: check the camera{camera} and the unit",
+            plane.label
+        )
+    })
+}

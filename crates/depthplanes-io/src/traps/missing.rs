@@ -1,0 +1,96 @@
+//! Values that stand for "nothing measured": named, and left out where they cannot be a measurement.
+
+use depthplanes::Measure;
+
+use super::{FEW, Probe, percent};
+use crate::frame::{Frame, Pixels};
+
+/// From this many metres on no camera measures depth, whatever the unit: the largest value that a file of millimetres or
+/// metres can mean is less.
+const NO_DEPTH: f32 = 1e9;
+/// The largest value of 16-bit floats, which programs clip to.
+const LARGEST_HALF: f32 = 65_504.0;
+/// -16 as 16 unsigned bits: OpenCV's matchers write (smallest disparity - 1) x 16 where they match nothing.
+const MINUS_16: u16 = 65_520;
+/// Share of the pixels from which on such a value is no accident.
+const SHARE: f64 = 0.005;
+
+/// The value of a map that no sensor measures but programs write for "nothing there", with a note, if the user said
+/// nothing of missing values.
+pub(crate) fn not_measured(pixels: &Pixels, measure: Measure) -> Option<(f64, String)> {
+    let is_depth = matches!(measure, Measure::Depth { .. });
+    let (value, count, what) = match pixels {
+        Pixels::U16(values) if is_depth => (f64::from(u16::MAX), count(values, u16::MAX), "the largest of 16 bits"),
+        Pixels::U16(values) => (f64::from(MINUS_16), count(values, MINUS_16), "-16 of a stereo matcher in 16 bits"),
+        Pixels::F32(values) => largest_float(values, is_depth)?,
+        Pixels::U8(_) => return None,
+    };
+    let share = count as f64 / pixels.len().max(1) as f64;
+    (share >= SHARE).then(|| {
+        let (share, shown) = (percent(share), shown(value));
+        let note = format!(
+            "{share} of the pixels are {shown}, {what}: taken as missing, as --missing {shown} says; state --valid-range \
+             if they are measured"
+        );
+        (value, note)
+    })
+}
+
+fn count<T: PartialEq>(values: &[T], wanted: T) -> usize {
+    values.iter().filter(|&value| *value == wanted).count()
+}
+
+/// The largest value of a map of floats, if it is none that was measured.
+fn largest_float(values: &[f32], is_depth: bool) -> Option<(f64, usize, &'static str)> {
+    let largest = values.iter().copied().filter(|value| value.is_finite()).fold(0.0, f32::max);
+    let what = match largest {
+        NO_DEPTH.. => "more than any depth or disparity",
+        LARGEST_HALF if is_depth => "the largest of 16-bit floats",
+        65_535.0 if is_depth => "the largest of 16 bits",
+        _ => return None,
+    };
+    Some((f64::from(largest), count(values, largest), what))
+}
+
+/// The shortest text that is read as the same value.
+fn shown(value: f64) -> String {
+    let single = value as f32;
+    if f64::from(single) == value && value.abs() >= 1e7 { format!("{single:e}") } else { value.to_string() }
+}
+
+/// One largest value that fills a part of the map: a renderer's far clip, or a background.
+pub(super) fn far_clip(frame: &Frame, probe: &Probe) -> Option<String> {
+    let Measure::Depth { metres } = frame.sensor.measure else { return None };
+    let (largest, count) = probe.largest()?;
+    let share = count as f64 / probe.pixels as f64;
+    let others = &probe.valid[..probe.valid.len() - count];
+    if share < 0.05 || others.len() < FEW || frame.valid_range.is_some_and(|(_, high)| high == largest) {
+        return None;
+    }
+    // What is measured goes on to the values beside it. A clip lies apart, or it is a round number of metres that is far
+    // more common than any other value.
+    let next = others[others.len() - 1];
+    let commonest = others.chunk_by(|a, b| a == b).map(<[f64]>::len).max().unwrap_or(0);
+    if largest < 1.5 * next && !(is_round(largest * metres) && count > 8 * commonest) {
+        return None;
+    }
+    let (share, shown, next) = (percent(share), shown(largest), shown(next));
+    let shown_m = largest * metres;
+    Some(format!(
+        "{share} of the pixels are exactly {shown} ({shown_m:.4} m), and all others are {next} or less: a background or a \
+         far clip? try --missing {shown}"
+    ))
+}
+
+/// Whether a number of metres has one or two digits that are not 0.
+fn is_round(metres: f64) -> bool {
+    let digits = metres / 10f64.powf(metres.abs().log10().floor() - 1.0);
+    (digits - digits.round()).abs() < 1e-5
+}
+
+/// Most of the map is missing.
+pub(super) fn mostly(_: &Frame, probe: &Probe) -> Option<String> {
+    let share = probe.missing_share();
+    (share > 0.5)
+        .then(|| format!("{} of the pixels are missing: check --missing, --valid-range and --encoding", percent(share)))
+}

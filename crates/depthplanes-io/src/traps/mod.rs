@@ -1,0 +1,52 @@
+//! The usual traps: what a map's numbers look like if they are not what they are taken for.
+//!
+//! In: a [`Frame`] as it is read. Out: notes, each with the option to try. They are looked for in every map, whatever was
+//! stated. A trap is a suspicion and changes nothing; only values that no camera measures are left out, which
+//! [`missing::not_measured`] does before.
+//!
+//! A new trap is a function in one of the files and a row of [`TRAPS`].
+
+mod camera;
+pub(crate) mod missing;
+mod packing;
+mod picture;
+mod probe;
+mod unit;
+
+pub(crate) use probe::Probe;
+pub(crate) use unit::{doubt_of_depth, length};
+
+use crate::frame::Frame;
+
+/// Pixels that are looked at: enough for shares of half a percent, cheap enough for every frame.
+const PIXELS: usize = 1 << 12;
+/// Fewer valid pixels say nothing.
+const FEW: usize = 64;
+
+/// A look at a map; a note if it fell into the trap.
+type Look = fn(&Frame, &Probe) -> Option<String>;
+
+/// All traps. Of a row the first that is found is told, since it explains the others.
+const TRAPS: &[&[Look]] = &[
+    &[missing::far_clip, missing::mostly],
+    &[
+        packing::swapped,
+        picture::labels,
+        picture::eight_bits,
+        picture::whole_range,
+        packing::grey_levels,
+        packing::multiples,
+        unit::median,
+    ],
+    &[camera::away, camera::of_disparity],
+];
+
+/// The traps that a map may have fallen into.
+pub(crate) fn traps(frame: &Frame) -> Vec<String> {
+    let Ok(probe) = Probe::of(frame, PIXELS) else { return Vec::new() };
+    TRAPS.iter().filter_map(|row| row.iter().find_map(|look| look(frame, &probe))).collect()
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.0} %", (100.0 * share).max(1.0))
+}

@@ -1,0 +1,46 @@
+//! Packed bits and bytes, and numbers that another program scales.
+
+use depthplanes::Measure;
+
+use super::Probe;
+use crate::frame::{Frame, Pixels};
+
+/// Bytes in the wrong order.
+pub(super) fn swapped(frame: &Frame, probe: &Probe) -> Option<String> {
+    let Pixels::U16(_) = frame.pixels else { return None };
+    let mean_step = |of: fn(u16) -> u16| {
+        let steps = probe.pairs.iter().map(|[a, b]| f64::from(of(*a as u16).abs_diff(of(*b as u16))));
+        steps.sum::<f64>() / probe.pairs.len() as f64
+    };
+    let (stored, swapped) = (mean_step(|value| value), mean_step(u16::swap_bytes));
+    (probe.pairs.len() >= super::FEW && stored > 256.0 && swapped * 8.0 < stored)
+        .then(|| "neighbours differ far less with their bytes swapped: try --swap-bytes".to_string())
+}
+
+/// 16 bits that hold 8.
+pub(super) fn grey_levels(frame: &Frame, probe: &Probe) -> Option<String> {
+    let Pixels::U16(_) = frame.pixels else { return None };
+    let (largest, _) = probe.largest()?;
+    let is_depth = matches!(frame.sensor.measure, Measure::Depth { .. });
+    (is_depth && largest < 256.0 && probe.valid.len() >= super::FEW)
+        .then(|| format!("16 bits but no value above {largest}: grey levels or labels? try --encoding grey"))
+}
+
+/// Millimetres that are multiples of 8 or 5.
+pub(super) fn multiples(frame: &Frame, probe: &Probe) -> Option<String> {
+    let is_millimetres = frame.sensor.measure == Measure::Depth { metres: 0.001 };
+    if !probe.is_integer || !is_millimetres || frame.encoding != "millimetre" || probe.levels().len() < 8 {
+        return None;
+    }
+    // Not quite all: player bits and distances above 8 m leave other remainders.
+    let multiples_of = |of: f64| {
+        let multiples = probe.valid.iter().filter(|value| *value % of == 0.0).count();
+        probe.valid.len() >= super::FEW && multiples * 100 >= probe.valid.len() * 95
+    };
+    if multiples_of(8.0) {
+        let packed = "the values are multiples of 8, as Kinect SDK 1 and SUN RGB-D pack them";
+        return Some(format!("{packed}: try --encoding kinect-sdk or sun-rgbd"));
+    }
+    multiples_of(5.0)
+        .then(|| "the values are multiples of 5, as in TUM RGB-D (5000 a metre): try --encoding tum".to_string())
+}

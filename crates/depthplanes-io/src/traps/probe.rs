@@ -1,0 +1,68 @@
+//! Evenly spaced pixels of a map, with what the traps ask of them.
+
+use depthplanes::{AnyView, DepthView, Pixel, with_view};
+
+use crate::error::Result;
+use crate::frame::{Frame, Pixels};
+
+/// Evenly spaced pixels of a map.
+pub(crate) struct Probe {
+    /// Pixels looked at.
+    pub(crate) pixels: usize,
+    /// The valid values among them, increasing.
+    pub(crate) valid: Vec<f64>,
+    /// Valid pixels and their right neighbours.
+    pub(crate) pairs: Vec<[f64; 2]>,
+    /// Whether the file's samples are whole numbers.
+    pub(crate) is_integer: bool,
+}
+
+impl Probe {
+    /// About `most` pixels of a map, or all of them if it has no more.
+    pub(crate) fn of(frame: &Frame, most: usize) -> Result<Probe> {
+        let stride = ((frame.width * frame.height).div_ceil(most)) | 1; // Odd, so as not to stay in a few columns.
+        let is_integer = !matches!(frame.pixels, Pixels::F32(_));
+        let view: AnyView<'_> = frame.view()?;
+        Ok(with_view!(view, view => Probe { is_integer, ..Probe::values(view, stride) }))
+    }
+
+    fn values<T: Pixel>(view: DepthView<'_, T>, stride: usize) -> Probe {
+        let (width, valid) = (view.width(), view.validity());
+        let mut probe = Probe { pixels: 0, valid: Vec::new(), pairs: Vec::new(), is_integer: true };
+        for at in (0..width * view.height()).step_by(stride) {
+            probe.pixels += 1;
+            let (row, u) = (view.row(at / width), at % width);
+            if valid.holds(row[u]) {
+                probe.valid.push(row[u].into());
+                if u + 1 < width && valid.holds(row[u + 1]) {
+                    probe.pairs.push([row[u].into(), row[u + 1].into()]);
+                }
+            }
+        }
+        probe.valid.sort_unstable_by(f64::total_cmp);
+        probe
+    }
+
+    /// Share of the pixels without a measurement, 0 to 1.
+    pub(crate) fn missing_share(&self) -> f64 {
+        1.0 - self.valid.len() as f64 / self.pixels.max(1) as f64
+    }
+
+    /// The value in the middle.
+    pub(super) fn median(&self) -> Option<f64> {
+        self.valid.get(self.valid.len() / 2).copied()
+    }
+
+    /// The largest value, and how many of the valid pixels have exactly that.
+    pub(super) fn largest(&self) -> Option<(f64, usize)> {
+        let &largest = self.valid.last()?;
+        Some((largest, self.valid.len() - self.valid.partition_point(|&value| value < largest)))
+    }
+
+    /// The different values, increasing.
+    pub(super) fn levels(&self) -> Vec<f64> {
+        let mut levels = self.valid.clone();
+        levels.dedup();
+        levels
+    }
+}
