@@ -37,7 +37,7 @@ pub(crate) fn choose(
     };
     let of_preset = encoding::by_name(preset.encoding)?;
     if suits(of_preset, image, format) {
-        return Ok(Choice { encoding: of_preset, why: format!("of preset {}", preset.name), note: None });
+        return Ok(Choice { encoding: of_preset, why: "preset".into(), note: None });
     }
     let (encoding, why) = encoding::likely(&image.pixels, image.width, format, of_preset.disparity || disparity);
     let note = format!(

@@ -56,7 +56,7 @@ pub struct Frame {
 /// Where the meaning of a map's numbers comes from, so that a result can be made again and a wrong one traced.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Provenance {
-    /// Why the encoding is what it is: `stated`, the preset, or what the map looks like.
+    /// Why the encoding is what it is: `stated`, `preset`, or what the map looks like.
     pub encoding: String,
     /// The sensor preset in use.
     pub preset: Option<&'static str>,

@@ -39,7 +39,7 @@ fn units_of_the_depth_encodings() {
         assert!((depth_m(&frame, value.into()) - metres).abs() < 1e-12, "{name}");
         assert_eq!(frame.pixels, Pixels::U16(vec![value, 7]), "{name} keeps the numbers");
     }
-    let fine = ReadOptions { scale: Some(0.0001), ..named("realsense") };
+    let fine = ReadOptions { depth_scale: Some(0.0001), ..named("realsense") };
     assert!((depth_m(&read(&[1, 1], &fine), 10_000.0) - 1.0).abs() < 1e-12);
     let scaled = ReadOptions { scale: Some(10_000.0), ..named("millimetre") };
     assert!((depth_m(&read(&[1, 1], &scaled), 10_000.0) - 1.0).abs() < 1e-12);
@@ -85,7 +85,9 @@ fn guesses_follow_the_sample_type() {
     let floats = |value: f32| npy("<f4", false, "(1, 2)", &[value.to_le_bytes(), value.to_le_bytes()].concat());
     assert_eq!(guess(&pgm16(1, &[900]), &none), "millimetre");
     assert_eq!(guess(b"P5 1 1 255\n\x09", &none), "grey");
-    assert_eq!(guess(&pfm(&depth()), &none), "middlebury");
+    assert_eq!(guess(&pfm(&[6; WIDTH * HEIGHT]), &none), "middlebury");
+    assert_eq!(guess(&pfm(&[600; WIDTH * HEIGHT]), &none), "millimetre"); // a disparity of 600 in 7 columns
+    assert_eq!(guess(&pfm(&[600; WIDTH * HEIGHT]), &disparity), "middlebury");
     assert_eq!(guess(&floats(2.5), &none), "metre");
     assert_eq!(guess(&floats(2500.0), &none), "millimetre");
     assert_eq!(guess(&pgm16(1, &[20_000]), &disparity), "kitti");

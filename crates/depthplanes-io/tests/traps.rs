@@ -1,0 +1,317 @@
+//! The usual traps: each kind of map that is not what it is taken for comes with a note that leads to the right reading, or
+//! is read right; ordinary maps come with none.
+
+mod common;
+#[path = "common/room.rs"]
+mod room;
+
+use depthplanes::Measure;
+use depthplanes_io::encoding::Stereo;
+use depthplanes_io::{Frame, Pixels, ReadOptions, Source, decode};
+use room::{CAMERA, ROOM, SIZE, check, depths_m, notes};
+
+/// Distances to 2 %, normals to 0.03, 95 % of the valid pixels.
+const CLOSE: [f64; 3] = [0.02, 0.03, 0.95];
+
+fn camera() -> ReadOptions {
+    ReadOptions { intrinsics: Some(CAMERA), ..Default::default() }
+}
+
+fn encoding(name: &str) -> ReadOptions {
+    ReadOptions { encoding: Some(name.into()), ..camera() }
+}
+
+fn preset(name: &str) -> ReadOptions {
+    ReadOptions { preset: Some(name.into()), ..camera() }
+}
+
+fn npy(kind: &str, data: Vec<u8>) -> Vec<u8> {
+    let [width, height] = SIZE;
+    let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({height}, {width}), }}");
+    let padded = format!("{header:<117}\n");
+    [b"\x93NUMPY\x01\x00".as_slice(), &(padded.len() as u16).to_le_bytes(), padded.as_bytes(), &data].concat()
+}
+
+/// The room as floats, each depth in metres turned into a value.
+fn floats(value: impl Fn(usize, f64) -> f64) -> Vec<u8> {
+    let values = depths_m().into_iter().enumerate().map(|(at, depth)| value(at, depth) as f32);
+    npy("<f4", values.flat_map(f32::to_le_bytes).collect())
+}
+
+/// The room as 16-bit numbers.
+fn counts(value: impl Fn(usize, f64) -> f64) -> Vec<u8> {
+    let values = depths_m().into_iter().enumerate().map(|(at, depth)| value(at, depth).round() as u16);
+    npy("<u2", values.flat_map(u16::to_le_bytes).collect())
+}
+
+fn pfm(value: impl Fn(f64) -> f64) -> Vec<u8> {
+    let [width, height] = SIZE;
+    let depths = depths_m();
+    let rows = depths.chunks(width).rev().flatten().flat_map(|depth| (value(*depth) as f32).to_le_bytes());
+    [format!("Pf\n{width} {height}\n-1\n").into_bytes(), rows.collect()].concat()
+}
+
+fn read(bytes: &[u8], options: &ReadOptions) -> Frame {
+    decode(bytes, "room", options).unwrap()
+}
+
+/// Asserts that some note has all these words.
+fn noted(name: &str, frame: &Frame, words: &[&str]) {
+    let notes = notes(frame);
+    assert!(notes.lines().any(|note| words.iter().all(|word| note.contains(word))), "{name}: {words:?} in\n{notes}");
+}
+
+fn millimetres(_: usize, depth: f64) -> f64 {
+    1000.0 * depth
+}
+
+fn metres(_: usize, depth: f64) -> f64 {
+    depth
+}
+
+#[test]
+fn ordinary_maps_come_with_no_note() {
+    for (name, bytes, options) in [
+        ("millimetres", counts(millimetres), camera()),
+        ("metres", floats(metres), camera()),
+        ("a preset's millimetres", counts(millimetres), preset("azure-kinect")),
+        ("stated metres", floats(metres), encoding("metre")),
+        ("millimetres as floats", floats(millimetres), encoding("millimetre")),
+        ("tum", counts(|_, depth| 5000.0 * depth), encoding("tum")),
+    ] {
+        let frame = read(&bytes, &options);
+        check(name, &frame, &ROOM, CLOSE);
+        assert_eq!(notes(&frame), "", "{name}");
+    }
+}
+
+#[test]
+fn a_preset_never_overrides_what_the_file_says() {
+    for (name, bytes, of) in [
+        ("floats of metres", floats(metres), "kinect1"),
+        ("floats of metres, TUM", floats(metres), "tum-fr1"),
+        ("floats of millimetres", floats(|_, depth| 1000.0 * depth + 0.25), "realsense-d4xx"),
+        ("double precision", npy("<f8", depths_m().into_iter().flat_map(f64::to_le_bytes).collect()), "kinect2"),
+    ] {
+        let frame = read(&bytes, &preset(of));
+        check(name, &frame, &ROOM, CLOSE);
+        noted(name, &frame, &[of, "expects the encoding"]);
+        assert_eq!(frame.provenance.preset, Some(of));
+    }
+    // Counts that were saved as floats are the preset's.
+    let frame = read(&floats(|_, depth| (5000.0 * depth).round()), &preset("tum-fr1"));
+    assert_eq!(frame.sensor.measure, Measure::Depth { metres: 1.0 / 5000.0 });
+    assert_eq!(notes(&frame), "");
+    let header = "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 8\nHEIGHT 8\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 64\nDATA ascii\n";
+    let cloud = format!("{header}{}", "0 0 1.5\n".repeat(64));
+    for of in ["kinect1", "tum-fr2", "azure-kinect"] {
+        let frame = read(cloud.as_bytes(), &ReadOptions { preset: Some(of.into()), ..Default::default() });
+        assert_eq!((frame.encoding, frame.sensor.measure), ("metre", Measure::Depth { metres: 1.0 }), "{of}");
+    }
+}
+
+#[test]
+fn depths_that_no_camera_sees_name_the_flag_that_is_wrong() {
+    let scaled = |scale| ReadOptions { scale: Some(scale), ..camera() };
+    let rig = |baseline_m| ReadOptions {
+        stereo: Some(Stereo { focal_px: 115.2, baseline_m, doffs_px: 0.0 }),
+        ..encoding("kitti")
+    };
+    let disparity = |_: usize, depth: f64| 256.0 * 115.2 * 0.12 / depth;
+    for (name, bytes, options, words) in [
+        (
+            "metres for millimetres",
+            counts(millimetres),
+            encoding("metre"),
+            ["--encoding metre", "try --encoding millimetre"],
+        ),
+        (
+            "millimetres for metres",
+            floats(metres),
+            encoding("millimetre"),
+            ["--encoding millimetre", "try --encoding metre"],
+        ),
+        ("a scale the other way up", counts(millimetres), scaled(0.001), ["--scale", "--depth-scale 0.001"]),
+        (
+            "a depth scale as scale of a preset",
+            counts(millimetres),
+            ReadOptions { scale: Some(0.001), ..preset("realsense-d4xx") },
+            ["--scale", "--depth-scale 0.001"],
+        ),
+        ("a scale of metres", counts(millimetres), scaled(1.0), ["median depth", "try --scale 1000"]),
+        ("a scale of micrometres", counts(millimetres), scaled(1e6), ["median depth", "try --scale 1000"]),
+        ("a baseline in millimetres", counts(disparity), rig(120.0), ["--baseline is in metres", "--baseline 0.12"]),
+        ("a baseline in kilometres", counts(disparity), rig(0.00012), ["baseline", "--baseline 0.12"]),
+    ] {
+        noted(name, &read(&bytes, &options), &words);
+    }
+    let right = read(&counts(disparity), &rig(0.12));
+    check("a baseline in metres", &right, &ROOM, CLOSE);
+    assert_eq!(notes(&right), "");
+    let right = read(&counts(millimetres), &ReadOptions { depth_scale: Some(0.001), ..preset("realsense-d4xx") });
+    check("a depth scale", &right, &ROOM, CLOSE);
+}
+
+#[test]
+fn a_scale_is_map_units_per_metre_whatever_the_preset() {
+    let tenths = counts(|_, depth| 10_000.0 * depth);
+    for of in ["realsense-d4xx", "kinect1", "azure-kinect", "tof"] {
+        let by_scale = read(&tenths, &ReadOptions { scale: Some(10_000.0), ..preset(of) });
+        let by_depth_scale = read(&tenths, &ReadOptions { depth_scale: Some(0.0001), ..preset(of) });
+        for frame in [by_scale, by_depth_scale] {
+            check(of, &frame, &ROOM, CLOSE);
+        }
+    }
+    let both = ReadOptions { scale: Some(1.0), depth_scale: Some(1.0), ..camera() };
+    let of_disparity = ReadOptions { depth_scale: Some(1.0), ..encoding("kitti") };
+    for options in [both, of_disparity] {
+        assert!(decode(&tenths, "room", &options).unwrap_err().to_string().contains("--depth-scale"));
+    }
+}
+
+#[test]
+fn what_stands_for_nothing_is_left_out_and_named() {
+    let sky = |at: usize| at < 128 * 24;
+    let floats_with = |value: f64| floats(move |at, depth| if sky(at) { value } else { depth });
+    for (name, value) in
+        [("1e10", 1e10), ("FLT_MAX", f64::from(f32::MAX)), ("largest half", 65_504.0), ("largest u32", 4_294_967_295.0)]
+    {
+        let frame = read(&floats_with(value), &camera());
+        noted(name, &frame, &["taken as missing", "--missing"]);
+        check(name, &frame, &ROOM, CLOSE);
+        let kept = read(&floats_with(value), &ReadOptions { valid_range: Some((0.0, 3.0e38)), ..camera() });
+        assert_eq!(kept.missing, None, "{name}: stated to be valid");
+    }
+    let frame = read(&counts(|at, depth| if sky(at) { 65_535.0 } else { 1000.0 * depth }), &camera());
+    noted("65535", &frame, &["taken as missing", "--missing 65535"]);
+    check("65535", &frame, &ROOM, CLOSE);
+    // The far clip of a renderer may be a wall: it is named and kept.
+    for (name, bytes, clip) in [
+        ("20 m", floats_with(20.0), "--missing 20"),
+        ("1000 m", floats_with(1000.0), "--missing 1000"),
+        ("10000 mm", counts(|at, depth| if sky(at) { 10_000.0 } else { 1000.0 * depth }), "--missing 10000"),
+        ("5 m beside 4.9 m", floats(|at, depth| if sky(at) { 5.0 } else { depth }), "--missing 5"),
+    ] {
+        noted(name, &read(&bytes, &camera()), &["far clip", clip]);
+    }
+}
+
+#[test]
+fn planes_out_of_sight_are_named() {
+    // Too few pixels for a background, enough for a plane.
+    let bytes =
+        floats(|at, depth| if at % 128 < 16 && at / 128 < 12 { 500.0 + 0.1 * (at % 128) as f64 } else { depth });
+    noted("500 m", &read(&bytes, &camera()), &["lies at a depth of", "--valid-range"]);
+    let wide = depthplanes::Intrinsics { fx: 1e-2, fy: 1e-2, ..CAMERA };
+    let frame = read(&counts(|_, _| 3000.0), &ReadOptions { intrinsics: Some(wide), ..Default::default() });
+    noted("a focal length of nothing", &frame, &["m2", "check the camera"]);
+}
+
+#[test]
+fn pictures_that_are_no_depth_are_named_whatever_is_stated() {
+    // Blocks of 16 x 16 pixels, in no order.
+    let block = |at: usize| (at % 128 / 16 + at / 128 / 16 * 8) as u32;
+    let label = |at: usize, of: &[u8]| of[(block(at).wrapping_mul(2_654_435_761) >> 20) as usize % of.len()];
+    let bytes8 = |value: &dyn Fn(usize) -> u8| npy("|u1", (0..128 * 96).map(value).collect());
+    for (name, values) in [
+        ("few labels", vec![0, 1, 2, 3, 4, 5]),
+        ("a mask", vec![0, 255, 255]),
+        ("far labels", vec![10, 200, 30, 90, 250, 7, 120]),
+    ] {
+        let image = bytes8(&|at| label(at, &values));
+        noted(name, &read(&image, &camera()), &["label image"]);
+        noted(name, &read(&image, &preset("kinect1")), &["label image"]);
+        let wide = npy("<u2", (0..128 * 96).flat_map(|at| u16::from(label(at, &values)).to_le_bytes()).collect());
+        noted(name, &read(&wide, &encoding("millimetre")), &["label"]);
+    }
+    let depths = depths_m();
+    noted("a picture of depth", &read(&bytes8(&|at| (50.0 * depths[at]) as u8), &camera()), &["8 bits a pixel"]);
+}
+
+#[test]
+fn relative_inverse_depth_is_noticed_however_it_is_stored() {
+    let nearest = depths_m().into_iter().fold(f64::INFINITY, f64::min);
+    let relative = |depth: f64| (1.0 / depth - 0.2) / (1.0 / nearest - 0.2);
+    for (name, bytes) in [
+        ("16 bits", counts(|_, depth| 65_535.0 * relative(depth))),
+        ("0 to 1", floats(|_, depth| relative(depth))),
+        ("as a network gives it", floats(|_, depth| 3.0 + 20.0 * relative(depth))),
+        ("hundreds", floats(|_, depth| 900.0 * relative(depth) + 200.0)),
+    ] {
+        let frame = read(&bytes, &ReadOptions::default());
+        noted(name, &frame, &["--encoding inverse-depth"]);
+        let right = ReadOptions { encoding: Some("inverse-depth".into()), ..Default::default() };
+        let (planes, share, notes) = room::planes(&read(&bytes, &right));
+        assert!(planes.len() == 4 && share > 0.95, "{name}: {} planes on {share}", planes.len());
+        assert!(notes.iter().all(|note| !note.contains("inverse")), "{name}: {notes:?}");
+    }
+    let metric = floats(|_, depth| 100.0 / depth);
+    let frame = read(&metric, &ReadOptions { scale: Some(100.0), ..encoding("inverse-depth") });
+    check("inverse depth with its scale", &frame, &ROOM, CLOSE);
+}
+
+#[test]
+fn distances_along_rays_are_noticed_with_noise_and_in_every_type() {
+    let along = |at: usize, depth: f64| depth * ray(at);
+    let noise = |at: usize| ((at as u32).wrapping_mul(2_654_435_761) >> 16) as f64 / 65_536.0 - 0.5;
+    for (name, bytes) in [
+        ("millimetres", counts(|at, depth| 1000.0 * along(at, depth))),
+        ("metres", floats(along)),
+        ("noise of 1 mm", floats(|at, depth| along(at, depth) + 0.0034 * noise(at))),
+        ("noise that grows", floats(|at, depth| along(at, depth) * (1.0 + 0.003 * noise(at)))),
+    ] {
+        let frame = read(&bytes, &camera());
+        noted(name, &frame, &["--ray-distance"]);
+        let turned = read(&bytes, &ReadOptions { ray_distance: true, ..camera() });
+        check(name, &turned, &ROOM, CLOSE);
+        assert_eq!(notes(&turned), "", "{name}");
+        assert!(turned.provenance.ray_distance);
+    }
+    let needs = ReadOptions { ray_distance: true, ..Default::default() };
+    assert!(decode(&floats(along), "room", &needs).unwrap_err().to_string().contains("--intrinsics"));
+    let disparity = ReadOptions { ray_distance: true, ..encoding("kitti") };
+    assert!(decode(&counts(along), "room", &disparity).is_err());
+}
+
+fn ray(at: usize) -> f64 {
+    let [x, y, z] = CAMERA.ray((at % SIZE[0]) as f64, (at / SIZE[0]) as f64);
+    (x * x + y * y + z * z).sqrt()
+}
+
+#[test]
+fn what_is_missing_stays_missing_when_distances_become_depth() {
+    let bytes = counts(|at, depth| if at % 3 == 0 { [0.0, 65_535.0][at % 2] } else { 1000.0 * depth * ray(at) });
+    let frame = read(&bytes, &ReadOptions { ray_distance: true, ..camera() });
+    check("with gaps", &frame, &ROOM, CLOSE);
+    let Pixels::F32(values) = &frame.pixels else { panic!("floats") };
+    assert!(values.iter().step_by(3).all(|value| value.is_nan()) && values[1].is_finite());
+}
+
+#[test]
+fn depth_in_pfm_files_is_read_or_noticed() {
+    check("millimetres", &read(&pfm(|depth| 1000.0 * depth), &camera()), &ROOM, CLOSE);
+    let frame = read(&pfm(|depth| depth), &camera());
+    noted("metres", &frame, &["--encoding metre"]);
+    let frame = read(&pfm(|depth| depth), &ReadOptions::default());
+    noted("metres without a camera", &frame, &["--encoding metre"]);
+    check("stated metres", &read(&pfm(|depth| depth), &encoding("metre")), &ROOM, CLOSE);
+    let rig = Stereo { focal_px: 115.2, baseline_m: 0.5, doffs_px: 0.0 };
+    let disparity = read(&pfm(|depth| 115.2 * 0.5 / depth), &ReadOptions { stereo: Some(rig), ..camera() });
+    check("disparity", &disparity, &ROOM, CLOSE);
+    assert_eq!(notes(&disparity), "");
+}
+
+#[test]
+fn who_stated_the_noise_is_known() {
+    let stated = depthplanes::noise::SensorNoise::Depth { base: 0.001, growth: 0.0 };
+    let options = ReadOptions { noise: Some(stated), ..preset("kinect2") };
+    let of = |options: &ReadOptions| {
+        let from = read(&counts(millimetres), options).provenance;
+        (from.noise, from.smooth_noise, from.encoding)
+    };
+    assert_eq!(of(&camera()).0, None);
+    assert_eq!(of(&preset("kinect1")), (None, Some(Source::Preset), "preset".into()));
+    assert_eq!(of(&preset("kinect2")).0, Some(Source::Preset));
+    assert_eq!(of(&options).0, Some(Source::Stated));
+    assert_eq!(of(&encoding("tum")).2, "stated");
+}
