@@ -18,7 +18,7 @@ fn without_output_flags_a_table_is_printed() {
     let out = bench.run(&["detect", "map.pgm"]).ok();
     let lines: Vec<&str> = out.lines().collect();
     assert!(lines[0].starts_with("map.pgm: 32 x 24, "), "{out}");
-    assert!(lines[1].starts_with("planar (defaults)"), "{out}");
+    assert!(lines[1].starts_with("planar, noise estimated"), "{out}");
     assert!(lines[1].ends_with("2 planes on 100.0 % of the valid pixels"), "{out}");
     assert!(
         lines[2].split_whitespace().eq("plane pixels share mean value per column per row rms columns rows".split(' '))
@@ -275,7 +275,7 @@ fn disparities_with_a_rig_become_metric() {
 fn where_no_plane_is_found_it_says_what_to_try() {
     let bench = Bench::with_map("no_plane");
     let ran = bench.run(&["detect", "map.pgm", "--min", "100000"]);
-    assert!(ran.err.contains("no plane found by planar (min 100000); `depthplanes params planar`"), "{ran:?}");
+    assert!(ran.err.contains("no plane found by planar (min 100000), noise estimated; `depthplanes params planar`"), "{ran:?}");
     assert!(ran.ok().contains("0 planes"));
     bench.write("empty.pgm", &[b"P5 4 2 65535\n".to_vec(), vec![0; 16]].concat());
     let ran = bench.run(&["detect", "empty.pgm"]);

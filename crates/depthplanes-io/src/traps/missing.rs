@@ -2,7 +2,7 @@
 
 use depthplanes::Measure;
 
-use super::{FEW, Probe, percent};
+use super::{FEW, Probe, is_small, percent};
 use crate::frame::{Frame, Pixels};
 
 /// From this many metres on no camera measures depth, whatever the unit: the largest value that a file of millimetres or
@@ -64,7 +64,11 @@ pub(super) fn far_clip(frame: &Frame, probe: &Probe) -> Option<String> {
     let (largest, count) = probe.largest()?;
     let share = count as f64 / probe.pixels as f64;
     let others = &probe.valid[..probe.valid.len() - count];
-    if share < 0.05 || others.len() < FEW || frame.valid_range.is_some_and(|(_, high)| high == largest) {
+    if is_small(frame)
+        || share < 0.05
+        || others.len() < FEW
+        || frame.valid_range.is_some_and(|(_, high)| high == largest)
+    {
         return None;
     }
     // What is measured goes on to the values beside it. A clip lies apart, or it is a round number of metres that is far

@@ -22,6 +22,8 @@ use crate::frame::Frame;
 const PIXELS: usize = 1 << 12;
 /// Fewer valid pixels say nothing.
 const FEW: usize = 64;
+/// Maps of fewer pixels are examples written by hand, of few values and large steps; no camera makes them.
+const SMALL: usize = 4096;
 
 /// A look at a map; a note if it fell into the trap.
 type Look = fn(&Frame, &Probe) -> Option<String>;
@@ -45,6 +47,10 @@ const TRAPS: &[&[Look]] = &[
 pub(crate) fn traps(frame: &Frame) -> Vec<String> {
     let Ok(probe) = Probe::of(frame, PIXELS) else { return Vec::new() };
     TRAPS.iter().filter_map(|row| row.iter().find_map(|look| look(frame, &probe))).collect()
+}
+
+fn is_small(frame: &Frame) -> bool {
+    frame.pixels.len() < SMALL
 }
 
 fn percent(share: f64) -> String {

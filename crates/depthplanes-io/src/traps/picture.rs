@@ -2,7 +2,7 @@
 
 use depthplanes::Measure;
 
-use super::Probe;
+use super::{Probe, is_small};
 use crate::frame::{Frame, Pixels};
 
 /// Few values, each alike over whole regions, that jump at borders: a label image.
@@ -10,7 +10,7 @@ pub(super) fn labels(frame: &Frame, probe: &Probe) -> Option<String> {
     let levels = probe.levels();
     // Disparity of whole pixels has few values, too.
     let may_be = matches!(frame.sensor.measure, Measure::Depth { .. }) || frame.encoding == "grey";
-    if !probe.is_integer || !may_be || !(2..64).contains(&levels.len()) {
+    if is_small(frame) || !probe.is_integer || !may_be || !(2..64).contains(&levels.len()) {
         return None;
     }
     let rank = |value: f64| levels.partition_point(|&level| level < value) as i64;
