@@ -95,7 +95,8 @@ fn every_licence_is_allowed() {
 
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     // Those of Linux; others' are downloaded by nobody who builds there.
-    let words = ["metadata", "--format-version=1", "--locked", "--filter-platform=x86_64-unknown-linux-gnu", "--all-features"];
+    let words =
+        ["metadata", "--format-version=1", "--locked", "--filter-platform=x86_64-unknown-linux-gnu", "--all-features"];
     let output = Command::new(cargo).args(words).current_dir(root()).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let metadata: Value = serde_json::from_slice(&output.stdout).unwrap();

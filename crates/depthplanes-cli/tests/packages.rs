@@ -27,9 +27,11 @@ fn pack(bench: &Bench, folder: &str) -> Vec<String> {
     std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
     let folder = bench.folder.join(folder);
     let mut command = Command::new("scripts/pack");
-    let output = command.args([&program, &folder]).current_dir(root()).env("SOURCE_DATE_EPOCH", "1700000000").output().unwrap();
+    let output =
+        command.args([&program, &folder]).current_dir(root()).env("SOURCE_DATE_EPOCH", "1700000000").output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let mut names: Vec<_> = folder.read_dir().unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    let mut names: Vec<_> =
+        folder.read_dir().unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
 }
@@ -37,7 +39,13 @@ fn pack(bench: &Bench, folder: &str) -> Vec<String> {
 /// Manual pages of the program and of all its commands.
 fn pages(bench: &Bench) -> BTreeSet<String> {
     assert_eq!(bench.run(&["man", "--out-dir", "pages"]).code, Some(0));
-    bench.folder.join("pages").read_dir().unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+    bench
+        .folder
+        .join("pages")
+        .read_dir()
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect()
 }
 
 #[test]
@@ -56,12 +64,21 @@ fn the_packages_hold_what_they_should_and_are_the_same_each_time() {
     assert_eq!(names[0], format!("{top}.tar.gz"));
     let archive = bench.folder.join("first").join(&names[0]);
     let listed = printed("tar", &["tzf", archive.to_str().unwrap()]);
-    let own = ["depthplanes", "README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE", "THIRD-PARTY"].map(str::to_string);
-    let completions = ["depthplanes.bash", "_depthplanes", "depthplanes.fish"].map(|name| format!("completions/{name}"));
+    let own = ["depthplanes", "README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE", "THIRD-PARTY"]
+        .map(str::to_string);
+    let completions =
+        ["depthplanes.bash", "_depthplanes", "depthplanes.fish"].map(|name| format!("completions/{name}"));
     let manuals = pages.iter().map(|page| format!("man/{page}"));
-    let expected: BTreeSet<_> = own.into_iter().chain(completions).chain(manuals).map(|name| format!("{top}/{name}")).collect();
+    let expected: BTreeSet<_> =
+        own.into_iter().chain(completions).chain(manuals).map(|name| format!("{top}/{name}")).collect();
     let files = listed.lines().filter(|name| !name.ends_with('/')).map(str::to_string);
     assert_eq!(files.collect::<BTreeSet<_>>(), expected);
+
+    let licences = printed("tar", &["xzOf", archive.to_str().unwrap(), &format!("{top}/THIRD-PARTY")]);
+    for linked in ["musl, ", "clap 4", "exr 1", "rayon 1"] {
+        assert!(licences.contains(&format!("\n{linked}")), "no licence of {linked}");
+    }
+    assert!(licences.contains("THE SOFTWARE IS PROVIDED") && !licences.contains("\ndepthplanes"));
 
     // Made where there is Debian's dpkg-deb.
     let Some(package) = names.get(1) else { return };
@@ -85,6 +102,9 @@ fn the_packages_hold_what_they_should_and_are_the_same_each_time() {
     let files = listed.lines().filter(|line| line.starts_with('-'));
     // Root's, and of the stated time.
     assert!(files.clone().all(|line| line.contains(" root/root ") && line.contains(" 2023-11-1")), "{listed}");
-    assert_eq!(files.map(|line| line.split_whitespace().last().unwrap().to_string()).collect::<BTreeSet<_>>(), expected);
+    assert_eq!(
+        files.map(|line| line.split_whitespace().last().unwrap().to_string()).collect::<BTreeSet<_>>(),
+        expected
+    );
     assert_eq!(printed("dpkg-deb", &["--field", package, "Version"]).trim(), version);
 }
