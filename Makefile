@@ -50,8 +50,8 @@ demo: ## Build the program and run a made-up scene through it into out/demo
 dist: ## Build the static program and pack it into dist: an archive and a Debian package
 	@scripts/dist
 
-try-deb: dist ## Install the Debian package in a new Debian and run it there; needs root
-	@scripts/try-deb dist/*.deb
+try-deb: ## Install the package that `make dist` made in a new Debian and run it there; needs root
+	@scripts/try-deb dist/depthplanes_*_amd64.deb
 
 deny: ## Check licences, sources and advisories of all dependencies
 	@scripts/deny '$(PYTHON)'
