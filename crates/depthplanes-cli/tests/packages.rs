@@ -56,6 +56,10 @@ fn the_packages_hold_what_they_should_and_are_the_same_each_time() {
     for name in &names {
         assert!(bench.read(&format!("first/{name}")) == bench.read(&format!("second/{name}")), "{name} differs");
     }
+    let page = std::fs::read_to_string(root().join("docs/install.md")).unwrap();
+    for name in &names {
+        assert!(page.contains(&format!("`{name}`")), "docs/install.md does not name {name}");
+    }
     let pages = pages(&bench);
     assert!(pages.len() > 10, "{pages:?}");
 
