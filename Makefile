@@ -1,5 +1,5 @@
 # People and CI call these targets and nothing else. `make help` lists them.
-# Everything that is made goes into the checkout: target/, .venv/, .venv-peers/, out/, fuzz/.
+# Everything that is made goes into the checkout: target/, .venv/, .venv-peers/, out/, dist/, fuzz/.
 
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
@@ -38,7 +38,7 @@ WASM := --manifest-path tests/wasm/Cargo.toml
 say = @printf '\n== %s\n' '$(1)'
 
 .NOTPARALLEL:
-.PHONY: help demo test lint fmt format clippy rust-tests rustdoc packages package targets oracles bench bench-planar ablate tables peers results golden fuzz clean
+.PHONY: help demo dist try-deb deny test lint fmt format clippy rust-tests rustdoc packages package targets oracles bench bench-planar ablate tables peers results golden fuzz clean
 
 help: ## List the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -46,6 +46,15 @@ help: ## List the targets
 demo: ## Build the program and run a made-up scene through it into out/demo
 	$(CARGO) build --release --package depthplanes-cli
 	"$${CARGO_TARGET_DIR:-target}"/release/depthplanes demo --out-dir out/demo
+
+dist: ## Build the static program and pack it into dist: an archive and a Debian package
+	@scripts/dist
+
+try-deb: ## Install the package that `make dist` made in a new Debian and run it there; needs root
+	@scripts/try-deb dist/depthplanes_*_amd64.deb
+
+deny: ## Check licences, sources and advisories of all dependencies
+	@scripts/deny '$(PYTHON)'
 
 # Two at a time, which does not show the figures that `make oracles` prints.
 test: ORACLE_FLAGS = --numprocesses 2
@@ -141,7 +150,7 @@ fmt: ## Format the code
 	@if scripts/component rustfmt; then $(CARGO) fmt --all && $(CARGO) fmt $(WASM); else exit 1; fi
 
 clean: ## Remove everything that was made
-	rm -rf target .venv .venv-peers out fuzz/target tests/wasm/target
+	rm -rf target .venv .venv-peers out dist fuzz/target tests/wasm/target
 	find . -name __pycache__ -o -name .pytest_cache | xargs rm -rf
 
 # Anew when the packages change, or when an earlier attempt did not finish.

@@ -18,6 +18,11 @@ mod table;
 use std::io::Write;
 use std::process::ExitCode;
 
+// musl's own allocator asks the system anew for each large block: `ngaf`, `normals` and `hough` take half as long again.
+#[cfg(target_env = "musl")]
+#[global_allocator]
+static ALLOCATOR: dlmalloc::GlobalDlmalloc = dlmalloc::GlobalDlmalloc;
+
 fn main() -> ExitCode {
     let command = args::parse();
     let mut out = std::io::BufWriter::new(std::io::stdout());
