@@ -9,7 +9,6 @@ use depthplanes_io::camera_file::read_camera;
 use depthplanes_io::encoding::Stereo;
 use depthplanes_io::formats::{DecodeOptions, Limits};
 use depthplanes_io::{Frame, Pixels, ReadOptions};
-use std::io::Read;
 
 /// The flags as the reading library takes them; reads the camera file.
 ///
@@ -18,7 +17,7 @@ use std::io::Read;
 pub(crate) fn options(reading: &Reading) -> Outcome<ReadOptions> {
     let mut options = ReadOptions {
         decode: DecodeOptions {
-            limits: Limits::default(),
+            limits: Limits { max_pixels: reading.max_pixels, max_bytes: reading.max_bytes },
             member: reading.member.clone(),
             raw_size: reading.raw_size,
             luminance: false,
@@ -65,8 +64,8 @@ fn stereo(reading: &Reading, options: &ReadOptions) -> Outcome<Option<Stereo>> {
 /// What is wrong with the file or the scene.
 pub(crate) fn frame(input: &Input, options: &ReadOptions) -> Outcome<Frame> {
     match input {
-        Input::File(path) => Ok(depthplanes_io::read(path, options)?),
-        Input::Standard => Ok(depthplanes_io::decode(&standard_input()?, "-", options)?),
+        Input::File(path) => depthplanes_io::read(path, options).map_err(refusal),
+        Input::Standard => depthplanes_io::read_stream(std::io::stdin().lock(), "-", options).map_err(refusal),
         Input::Scene(spec) => {
             let mut frame = scene(spec)?;
             let ReadOptions { noise, smooth_noise, .. } = *options;
@@ -81,13 +80,17 @@ pub(crate) fn frame(input: &Input, options: &ReadOptions) -> Outcome<Frame> {
     }
 }
 
-/// All of standard input, up to the limit of a file.
-fn standard_input() -> Outcome<Vec<u8>> {
-    let most = Limits::default().max_bytes as u64 + 1;
-    let mut bytes = Vec::new();
-    let failed = |error| Failure::request(format!("-: standard input cannot be read: {error}"));
-    std::io::stdin().lock().take(most).read_to_end(&mut bytes).map_err(failed)?;
-    Ok(bytes)
+/// What is wrong with a map; for limits, the flag that raises them.
+fn refusal(error: depthplanes_io::Error) -> Failure {
+    let flag = match error.kind() {
+        depthplanes_io::Error::Limit { what, .. } if what.contains("pixels") => Some("--max-pixels"),
+        depthplanes_io::Error::Limit { .. } => Some("--max-bytes"),
+        _ => None,
+    };
+    match flag {
+        Some(flag) => Failure::request(format!("{error} ({flag} N)")),
+        None => error.into(),
+    }
 }
 
 /// A made-up scene as a frame; it knows its own unit and camera.

@@ -5,6 +5,7 @@ use crate::failure::{Failure, Outcome, note};
 use crate::folders::{make_folder, refuse_file};
 use crate::inputs::{self, Input};
 use crate::run::{Recipe, Runner};
+use crate::terminal::plain;
 use crate::{load, pool, show};
 use depthplanes::noise::SensorNoise;
 use depthplanes_io::outputs::{self, OUTPUTS, Output, Report};
@@ -91,7 +92,7 @@ fn readable(wanted: &Detect, report: &Report<'_>, written: &[(&Output, PathBuf)]
         text += &show::table(report, wanted.rows);
         return if alone { text } else { text + "\n" };
     }
-    let files: Vec<String> = written.iter().map(|(_, path)| path.display().to_string()).collect();
+    let files: Vec<String> = written.iter().map(|(_, path)| plain(&path.display().to_string()).into_owned()).collect();
     text += &format!("wrote {}\n", files.join(", "));
     if wanted.out_dir.is_some() && !report.is_metric() {
         text += "no point cloud and no mesh, since camera or unit are not known\n";

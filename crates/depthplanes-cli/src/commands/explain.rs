@@ -9,6 +9,7 @@ use crate::inputs::{self, Input};
 use crate::load;
 use crate::run::Recipe;
 use crate::show::significant;
+use crate::terminal::plain;
 use depthplanes::Explanation;
 use depthplanes::explanation::{Finding, Quantity, Suggestion};
 use depthplanes::noise::SensorNoise;
@@ -86,7 +87,7 @@ fn suggestion_record(suggestion: &Suggestion) -> Value {
 /// The findings with the stage in front, then the verdict and what to change.
 fn readable(name: &str, why: &Explanation) -> String {
     let [u, v] = why.at;
-    let mut text = format!("{name}: column {u}, row {v}, by {}\n", why.method);
+    let mut text = format!("{}: column {u}, row {v}, by {}\n", plain(name), why.method);
     let has_noise =
         why.findings.iter().flat_map(|finding| &finding.quantities).any(|of| of.unit == "standard deviations");
     if has_noise {

@@ -19,6 +19,7 @@ pub(super) use page::Section;
 use super::datasets::Item;
 use super::rows::{Made, Row};
 use crate::failure::{Outcome, note};
+use crate::terminal::plain;
 use depthplanes_io::outputs::write_file;
 use page::Page;
 use std::io::Write;
@@ -39,7 +40,7 @@ pub(super) fn write(title: &str, folder: &Path, rows: &[&Row], sections: &[Secti
     if refused > 0 {
         note(&format!("{refused} of {} results are refusals; the report says why", rows.len()));
     }
-    writeln!(out, "wrote {}", written.join(", "))?;
+    writeln!(out, "wrote {}", plain(&written.join(", ")))?;
     Ok(())
 }
 
