@@ -67,8 +67,8 @@ pub(crate) fn note(message: &str) {
     say(&format!("{yellow}note:{yellow:#} {}", plain(message)));
 }
 
-/// A line to standard error. Where nobody can be told nothing is said.
-fn say(line: &str) {
+/// Lines to standard error; whoever says them has seen to names in them. Where nobody can be told nothing is said.
+pub(crate) fn say(line: &str) {
     let _ = writeln!(anstream::stderr().lock(), "{line}");
 }
 

@@ -8,7 +8,7 @@ use depthplanes::scene::{ScenePixels, Spec};
 use depthplanes_io::camera_file::read_camera;
 use depthplanes_io::encoding::Stereo;
 use depthplanes_io::formats::{DecodeOptions, Limits};
-use depthplanes_io::{Frame, Pixels, ReadOptions};
+use depthplanes_io::{Frame, Pixels, ReadOptions, memory};
 
 /// The flags as the reading library takes them; reads the camera file.
 ///
@@ -70,7 +70,8 @@ pub(crate) fn frame(input: &Input, options: &ReadOptions) -> Outcome<Frame> {
             let mut frame = scene(spec)?;
             let ReadOptions { noise, smooth_noise, .. } = *options;
             (frame.sensor.noise, frame.sensor.smooth_noise) = (noise, smooth_noise);
-            if *options != (ReadOptions { noise, smooth_noise, ..ReadOptions::default() }) {
+            let decode = DecodeOptions { limits: options.decode.limits, ..DecodeOptions::default() };
+            if *options != (ReadOptions { noise, smooth_noise, decode, ..ReadOptions::default() }) {
                 frame
                     .warnings
                     .push("a made-up scene knows its own unit and camera: flags on reading are not used".into());
@@ -95,7 +96,9 @@ fn refusal(error: depthplanes_io::Error) -> Failure {
 
 /// A made-up scene as a frame; it knows its own unit and camera.
 pub(crate) fn scene(spec: &str) -> Outcome<Frame> {
-    let scene = spec.parse::<Spec>()?.frame()?;
+    let spec = spec.parse::<Spec>()?;
+    memory::check(64 * (spec.width * spec.height) as u64)?;
+    let scene = spec.frame()?;
     let pixels = match scene.pixels {
         ScenePixels::U8(pixels) => Pixels::U8(pixels),
         ScenePixels::U16(pixels) => Pixels::U16(pixels),

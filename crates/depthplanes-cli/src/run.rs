@@ -1,10 +1,11 @@
 //! One map through the pipeline: which method with which parameters, and how long it takes.
 
 use crate::failure::{Failure, Outcome};
+use crate::pool;
 use depthplanes::methods::{self, METHODS, MethodInfo};
 use depthplanes::outline::{Outliner, Outlines};
 use depthplanes::{AnyView, Coplanar, Detection, Detector, Sensor};
-use depthplanes_io::Frame;
+use depthplanes_io::{Frame, memory};
 use depthplanes_io::outputs::{Spread, Times};
 use std::time::Instant;
 
@@ -42,6 +43,7 @@ impl Recipe {
             values[at.ok_or_else(|| lacks(method, name))?] = value;
         }
         drop(method.with(given)?); // they are checked
+        let threads = pool::threads(threads);
         Ok(Recipe { method, values, threads, coplanar: None, outlines: None, curved: false })
     }
 
@@ -106,6 +108,16 @@ impl Recipe {
         all.map(|(param, value)| format!("{} {value}", param.name)).collect::<Vec<_>>().join(", ")
     }
 
+    /// Refuses a map that there is no memory to look at.
+    ///
+    /// # Errors
+    /// Says how much is needed.
+    pub(crate) fn check_memory(&self, frame: &Frame) -> Outcome {
+        // As measured on maps of 3 and 12 million pixels: 22 `planar`, 16 `ngaf`, 43 to 143 the others.
+        let per_pixel = if ["planar", "ngaf"].contains(&self.method.name) { 24 } else { 144 };
+        Ok(memory::check(per_pixel * (frame.width * frame.height) as u64)?)
+    }
+
     fn outliner(&self) -> Outcome<Option<Outliner>> {
         Ok(self.outlines.map(Outliner::new).transpose()?)
     }
@@ -163,6 +175,7 @@ impl<'a> Runner<'a> {
             self.sensor = frame.sensor;
             self.detector = self.recipe.detector(self.sensor);
         }
+        self.recipe.check_memory(frame)?;
         let view = frame.view()?;
         let detection = self.detector.detect(view)?.clone();
         let camera = self.sensor.intrinsics;

@@ -25,6 +25,7 @@ pub(super) fn run(wanted: &Explain, out: &mut dyn Write) -> Outcome {
     let name = input.name();
     let named = |failure: Failure| failure.of_input(&name);
     let frame = load::frame(&input, &options).map_err(named)?;
+    recipe.check_memory(&frame).map_err(named)?;
     let why = recipe.detector(frame.sensor).explain(frame.view()?, wanted.at);
     let why = why.map_err(Failure::from).map_err(named)?;
     let text = if wanted.json { format!("{:#}\n", record(&name, &recipe, &why)) } else { readable(&name, &why) };
