@@ -97,7 +97,8 @@ fn refusal(error: depthplanes_io::Error) -> Failure {
 /// A made-up scene as a frame; it knows its own unit and camera.
 pub(crate) fn scene(spec: &str) -> Outcome<Frame> {
     let spec = spec.parse::<Spec>()?;
-    memory::check(64 * (spec.width * spec.height) as u64)?;
+    let needed = 64 * (spec.width * spec.height) as u64;
+    memory::check(needed, needed)?;
     let scene = spec.frame()?;
     let pixels = match scene.pixels {
         ScenePixels::U8(pixels) => Pixels::U8(pixels),

@@ -38,8 +38,10 @@ pub enum Error {
         limit: u64,
     },
     /// Memory that cannot be had.
-    #[error("{} of memory are needed and cannot be had; free some, or raise the limit of the process (ulimit -v)", megabytes(*bytes))]
+    #[error("{} of {what} are needed and cannot be had; free some, or raise the limit of the process (ulimit -v)", megabytes(*bytes))]
     Memory {
+        /// Memory, or address space.
+        what: &'static str,
         /// How many bytes are needed at once.
         bytes: u64,
     },

@@ -4,25 +4,41 @@ use std::fs;
 
 use crate::error::{Error, Result};
 
-/// Memory of this many bytes is asked of the machine and not of the process alone; below, reading what the machine says
-/// takes longer than it is worth.
+/// What the machine says of its memory is read from so many bytes on; below, that takes longer than it is worth.
 const MUCH: u64 = 1 << 28;
 
-/// Whether so many bytes can be had at once: in the process's address space and, as far as the system tells (Linux), in
-/// the machine.
+/// Address space is asked for in pieces of so many bytes, as programs do: systems refuse a single piece that is larger
+/// than all their memory.
+const PIECE: u64 = 1 << 26;
+
+/// Whether memory can be had for work that uses `used` bytes at once and reserves `reserved`.
+///
+/// Memory that is reserved and never used costs address space alone, which limits of the process (`ulimit -v`) count. What
+/// is used has to be free in the machine, as far as the system tells (Linux).
 ///
 /// # Errors
 /// [`Error::Memory`].
 ///
 /// ```
-/// assert!(depthplanes_io::memory::check(1 << 20).is_ok());
-/// assert!(depthplanes_io::memory::check(u64::MAX).is_err());
+/// assert!(depthplanes_io::memory::check(1 << 20, 1 << 21).is_ok());
+/// assert!(depthplanes_io::memory::check(1 << 60, 1 << 60).is_err());
 /// ```
-pub fn check(bytes: u64) -> Result<()> {
+pub fn check(used: u64, reserved: u64) -> Result<()> {
+    if used >= MUCH && free().is_some_and(|free| used > free) {
+        return Err(Error::Memory { what: "memory", bytes: used });
+    }
     // Reserved, never touched, and given back: the system's own answer, whatever limits it.
-    let fits = usize::try_from(bytes).is_ok_and(|bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok());
-    let free = || if bytes < MUCH { None } else { free() };
-    if fits && free().is_none_or(|free| bytes <= free) { Ok(()) } else { Err(Error::Memory { bytes }) }
+    let mut pieces: Vec<Vec<u8>> = Vec::new();
+    let mut left = used.max(reserved);
+    while left > 0 {
+        let mut piece = Vec::new();
+        if left > 1 << 46 || piece.try_reserve_exact(left.min(PIECE) as usize).is_err() {
+            return Err(Error::Memory { what: "address space", bytes: used.max(reserved) });
+        }
+        pieces.push(piece);
+        left -= left.min(PIECE);
+    }
+    Ok(())
 }
 
 /// Free bytes of the machine, or of the container if it has fewer; none where that cannot be known.

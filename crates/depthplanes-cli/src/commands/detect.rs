@@ -100,7 +100,8 @@ impl Plan<'_> {
         }
         if !files.is_empty() {
             // As measured: up to 37 bytes a pixel for all outputs.
-            memory::check(40 * (report.frame.width * report.frame.height) as u64)?;
+            let needed = 40 * (report.frame.width * report.frame.height) as u64;
+            memory::check(needed, needed)?;
         }
         outputs::write_all(report, &files)?;
         Ok(files)

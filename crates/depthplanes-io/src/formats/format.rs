@@ -46,7 +46,8 @@ impl Limits {
             return Err(Error::Limit { what: "number of decoded bytes", given: bytes, limit: self.max_bytes as u64 });
         }
         // What a decoder unpacks to, and the pixels that come of it.
-        memory::check(2 * bytes + area * size_of::<f32>() as u64)?;
+        let all = 2 * bytes + area * size_of::<f32>() as u64;
+        memory::check(all, all)?;
         Ok(area as usize)
     }
 }
