@@ -19,8 +19,8 @@ use exit_codes::EXIT_CODES;
 use flags::path_given;
 use std::ffi::OsString;
 use std::io::Write;
-use std::process::ExitCode;
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 pub(crate) use clap_complete::Shell;
 pub(crate) use flags::Reading;

@@ -64,7 +64,13 @@ fn stereo(reading: &Reading, options: &ReadOptions) -> Outcome<Option<Stereo>> {
 /// What is wrong with the file or the scene.
 pub(crate) fn frame(input: &Input, options: &ReadOptions) -> Outcome<Frame> {
     match input {
-        Input::File(path) => depthplanes_io::read(path, options).map_err(refusal),
+        Input::File(path) => {
+            // Its bytes, the samples, the pixels and what is looked at in them.
+            let needed =
+                6 * std::fs::metadata(path).map_or(0, |about| about.len().min(options.decode.limits.max_bytes as u64));
+            memory::check(needed, needed)?;
+            depthplanes_io::read(path, options).map_err(refusal)
+        }
         Input::Standard => depthplanes_io::read_stream(std::io::stdin().lock(), "-", options).map_err(refusal),
         Input::Scene(spec) => {
             let mut frame = scene(spec)?;
@@ -89,7 +95,7 @@ fn refusal(error: depthplanes_io::Error) -> Failure {
         _ => None,
     };
     match flag {
-        Some(flag) => Failure::request(format!("{error} ({flag} N)")),
+        Some(flag) => Failure::request(format!("{error}; if the file is trusted, raise it with {flag} N")),
         None => error.into(),
     }
 }

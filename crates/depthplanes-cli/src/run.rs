@@ -5,8 +5,8 @@ use crate::pool;
 use depthplanes::methods::{self, METHODS, MethodInfo};
 use depthplanes::outline::{Outliner, Outlines};
 use depthplanes::{AnyView, Coplanar, Detection, Detector, Sensor};
-use depthplanes_io::{Frame, memory};
 use depthplanes_io::outputs::{Spread, Times};
+use depthplanes_io::{Frame, memory};
 use std::time::Instant;
 
 /// The stage that makes outlines, after the method's own.

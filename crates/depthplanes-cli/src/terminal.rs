@@ -49,11 +49,11 @@ fn escaped(text: &str, is_wrong: impl Fn(char) -> bool) -> Cow<'_, str> {
 fn steers(c: char) -> bool {
     match c {
         '\n' | '\t' => false,
-        c if c.is_control() => true,                                // C0, DEL, C1
-        '\u{ad}' | '\u{34f}' | '\u{61c}' | '\u{180e}' => true,      // soft hyphen, joiner, marks of direction
-        '\u{115f}' | '\u{1160}' | '\u{3164}' | '\u{ffa0}' => true,  // letters that are blank
-        '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' => true,  // without width, line ends, directions
-        '\u{2060}'..='\u{206f}' | '\u{feff}' => true,               // more of them
+        c if c.is_control() => true,                                 // C0, DEL, C1
+        '\u{ad}' | '\u{34f}' | '\u{61c}' | '\u{180e}' => true,       // soft hyphen, joiner, marks of direction
+        '\u{115f}' | '\u{1160}' | '\u{3164}' | '\u{ffa0}' => true,   // letters that are blank
+        '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' => true,   // without width, line ends, directions
+        '\u{2060}'..='\u{206f}' | '\u{feff}' => true,                // more of them
         '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e0fff}' => true, // annotations, tags
         _ => false,
     }
@@ -78,7 +78,7 @@ mod tests {
         let value = serde_json::json!({"source": "\u{1b}\u{9b}\u{202e}\u{e0041}\\u\"\n"});
         let mut out = Plain(Vec::new());
         writeln!(out, "{value:#}").unwrap();
-        assert!(!String::from_utf8(out.0.clone()).unwrap().contains(|c| steers(c)));
+        assert!(!String::from_utf8(out.0.clone()).unwrap().contains(steers));
         assert_eq!(serde_json::from_slice::<serde_json::Value>(&out.0).unwrap(), value);
     }
 }

@@ -28,7 +28,7 @@ pub enum Error {
         accepted: &'static str,
     },
     /// The input asks for more than the stated limit.
-    #[error("{what} is {given}, the limit is {limit}; raise the limit if the file is trusted")]
+    #[error("{what} is {given}, the limit is {limit}")]
     Limit {
         /// The quantity.
         what: &'static str,

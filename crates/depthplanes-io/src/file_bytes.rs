@@ -39,7 +39,9 @@ pub(crate) fn read_known(path: &Path, most: usize, known: impl Fn(&[u8]) -> Resu
         return Err(too_long(length, most).in_file(&name));
     }
     let mut bytes = Vec::new();
-    bytes.try_reserve_exact(length as usize + 1).map_err(|_| Error::Memory { what: "memory", bytes: length }.in_file(&name))?;
+    bytes
+        .try_reserve_exact(length as usize + 1)
+        .map_err(|_| Error::Memory { what: "memory", bytes: length }.in_file(&name))?;
     read_to(file, &mut bytes, most).map_err(|error| error.named(&name))?;
     Ok(bytes)
 }
@@ -72,7 +74,9 @@ fn read_to(source: impl Read, bytes: &mut Vec<u8>, most: usize) -> Result<()> {
     match source.take(room).read_to_end(bytes) {
         Ok(_) if bytes.len() > most => Err(too_long(bytes.len() as u64, most)),
         Ok(_) => Ok(()),
-        Err(error) if error.kind() == io::ErrorKind::OutOfMemory => Err(Error::Memory { what: "memory", bytes: bytes.len() as u64 }),
+        Err(error) if error.kind() == io::ErrorKind::OutOfMemory => {
+            Err(Error::Memory { what: "memory", bytes: bytes.len() as u64 })
+        }
         Err(source) => Err(Error::Io { path: String::new(), source }),
     }
 }

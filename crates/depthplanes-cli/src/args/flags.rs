@@ -98,7 +98,8 @@ pub(super) fn reading() -> Vec<Arg> {
         numbers::<2>("valid-range", "LO,HI").help("Only values within this range, in map units, are valid"),
         Arg::new("raw-size").value_name("WxH").value_parser(size).help("Size of a headerless file"),
         Arg::new("member").value_name("NAME").help("The array to read from a file that holds several"),
-        limit("max-pixels", MAX_PIXELS).help("Refuse larger maps; `planar` needs 24 bytes of memory a pixel, with all outputs 64"),
+        limit("max-pixels", MAX_PIXELS)
+            .help("Refuse larger maps; `planar` needs 24 bytes of memory a pixel, with all outputs 64"),
         limit("max-bytes", MAX_BYTES).help("Refuse longer files, and maps that unpack to more"),
     ];
     all.into_iter().map(|arg| with_long_name(arg).help_heading("Reading")).collect()
@@ -111,9 +112,11 @@ pub(crate) const MAX_BYTES: usize = 1 << 29;
 
 /// A flag that takes a limit of what is read.
 fn limit(id: &'static str, default: usize) -> Arg {
-    Arg::new(id).value_name("N").default_value(default.to_string()).value_parser(|text: &str| match text.parse::<usize>() {
-        Ok(number) if number > 0 && number < 1 << 40 => Ok(number),
-        _ => Err("accepted: a whole number from 1".to_string()),
+    Arg::new(id).value_name("N").default_value(default.to_string()).value_parser(|text: &str| {
+        match text.parse::<usize>() {
+            Ok(number) if number > 0 && number < 1 << 40 => Ok(number),
+            _ => Err("accepted: a whole number from 1".to_string()),
+        }
     })
 }
 

@@ -26,7 +26,10 @@ impl Claim {
         match file.try_lock() {
             Ok(()) => {
                 let text = format!("{}\n", std::process::id());
-                file.set_len(0).and_then(|()| file.rewind()).and_then(|()| file.write_all(text.as_bytes())).map_err(failed)?;
+                file.set_len(0)
+                    .and_then(|()| file.rewind())
+                    .and_then(|()| file.write_all(text.as_bytes()))
+                    .map_err(failed)?;
             }
             Err(TryLockError::WouldBlock) => {
                 let mut holder = String::new();

@@ -4,7 +4,6 @@
 
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
-use crate::memory;
 
 /// What an untrusted file may ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,8 +25,7 @@ impl Limits {
     ///
     /// # Errors
     /// [`Error::Limit`] above [`Limits::max_pixels`], or if `sample_bytes` each exceed
-    /// [`Limits::max_bytes`]; [`Error::Unreadable`] for a side of 0 or above 65535; [`Error::Memory`] if the memory
-    /// to decode it cannot be had.
+    /// [`Limits::max_bytes`]; [`Error::Unreadable`] for a side of 0 or above 65535.
     pub fn area(&self, format: &'static str, width: u64, height: u64, sample_bytes: usize) -> Result<usize> {
         let side = 1..=depthplanes::limits::MAX_SIDE as u64;
         if !side.contains(&width) || !side.contains(&height) {
@@ -45,9 +43,6 @@ impl Limits {
         if bytes > self.max_bytes as u64 {
             return Err(Error::Limit { what: "number of decoded bytes", given: bytes, limit: self.max_bytes as u64 });
         }
-        // What a decoder unpacks to, and the pixels that come of it.
-        let all = 2 * bytes + area * size_of::<f32>() as u64;
-        memory::check(all, all)?;
         Ok(area as usize)
     }
 }

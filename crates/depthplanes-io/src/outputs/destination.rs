@@ -38,7 +38,7 @@ pub(super) fn destination(path: &Path) -> Result<Destination, OutputError> {
     let mut at = path.to_path_buf();
     for _ in 0..MOST_LINKS {
         match fs::read_link(&at) {
-            Ok(next) => at = folder_of(&at).join(next),
+            Ok(next) => at = at.with_file_name(next),
             Err(_) => return Ok(Destination::File(at)),
         }
     }

@@ -154,7 +154,7 @@ fn markdown(page: &Page<'_>) -> String {
     let mut text = format!("# {}\n\n", page.title);
     page.facts.iter().for_each(|[what, value]| text += &format!("- {what}: {value}\n"));
     for section in page.sections.iter().filter(|section| !section.tables.is_empty() || !section.text.is_empty()) {
-        text += &format!("\n## {}\n\n", section.title);
+        text += &format!("\n## {}\n\n", plain(&section.title));
         if !section.text.is_empty() {
             text += &format!("{}\n\n", section.text);
         }
@@ -166,7 +166,7 @@ fn markdown(page: &Page<'_>) -> String {
     }
     if !page.refusals.is_empty() {
         text += "\n## Refusals\n\n";
-        page.refusals.iter().for_each(|refusal| text += &format!("- {refusal}\n"));
+        page.refusals.iter().for_each(|refusal| text += &format!("- {}\n", plain(refusal)));
     }
     text
 }

@@ -22,7 +22,9 @@ impl Table {
     }
 
     pub(super) fn markdown(&self) -> String {
-        let line = |cells: &[String]| format!("| {} |\n", cells.iter().map(|cell| plain(cell)).collect::<Vec<_>>().join(" | "));
+        let line = |cells: &[String]| {
+            format!("| {} |\n", cells.iter().map(|cell| plain(cell)).collect::<Vec<_>>().join(" | "))
+        };
         let rule = |align: Align| if align == Align::Left { "---|" } else { "---:|" };
         let rule = format!("|{}\n", self.aligns().into_iter().map(rule).collect::<String>());
         line(&self.head) + &rule + &self.rows.iter().map(|row| line(row)).collect::<String>()
