@@ -8,6 +8,8 @@ mod exit_codes;
 mod flags;
 mod several;
 
+use crate::failure::{Failure, exit_code};
+use crate::terminal::plain;
 use clap::{Arg, ArgMatches, builder::PossibleValuesParser, value_parser};
 use depthplanes::Coplanar;
 use depthplanes::methods::{self, METHODS, MethodInfo};
@@ -18,6 +20,7 @@ use flags::path_given;
 use std::ffi::OsString;
 use std::io::Write;
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 pub(crate) use clap_complete::Shell;
 pub(crate) use flags::Reading;
@@ -88,9 +91,30 @@ pub(crate) struct Score {
     pub(crate) json: bool,
 }
 
-/// Parses the command line; on wrong use, or where help is asked for, it prints and exits.
-pub(crate) fn parse() -> Command {
-    let matches = program().get_matches();
+/// Parses the command line; on wrong use, or where help is asked for, it prints that, and what is left is the exit code.
+pub(crate) fn parse() -> Result<Command, ExitCode> {
+    let words: Vec<OsString> = std::env::args_os().collect();
+    match program().try_get_matches_from(&words) {
+        Ok(matches) => Ok(command(&matches)),
+        Err(error) => Err(told(error, &words)),
+    }
+}
+
+/// Prints help, or what is wrong with the words; the exit code for it.
+fn told(error: clap::Error, words: &[OsString]) -> ExitCode {
+    // The message shows words, and these may be names of files: said of words that steer no terminal.
+    let words: Vec<String> = words.iter().map(|word| plain(&word.to_string_lossy()).into_owned()).collect();
+    let error = program().try_get_matches_from(words).err().unwrap_or(error);
+    let printed = error.print().and_then(|()| std::io::stdout().flush());
+    match printed {
+        // Wrong use is wrong use even where nobody can be told.
+        _ if error.use_stderr() => ExitCode::from(2),
+        printed => exit_code(printed.map_err(Failure::from)),
+    }
+}
+
+/// What the user wants, by the words' meaning.
+fn command(matches: &ArgMatches) -> Command {
     let (name, matches) = matches.subcommand().expect("a command is required");
     match name {
         "detect" => Command::Detect(Box::new(detect(matches))),

@@ -1,8 +1,9 @@
 //! What went wrong, whose fault it is, and the exit code that says so.
 
+use crate::terminal::plain;
 use depthplanes_io::outputs::OutputError;
 use std::fmt;
-use std::io;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 /// Why a command did not do all that was asked.
@@ -56,14 +57,19 @@ impl Failure {
     /// Prints the failure to standard error.
     pub(crate) fn report(&self) {
         let red = anstyle::AnsiColor::Red.on_default().bold();
-        anstream::eprintln!("{red}error:{red:#} {self}");
+        say(&format!("{red}error:{red:#} {}", plain(&self.message)));
     }
 }
 
 /// Prints something that a person should know, but that is no failure.
 pub(crate) fn note(message: &str) {
     let yellow = anstyle::AnsiColor::Yellow.on_default().bold();
-    anstream::eprintln!("{yellow}note:{yellow:#} {message}");
+    say(&format!("{yellow}note:{yellow:#} {}", plain(message)));
+}
+
+/// Lines to standard error; whoever says them has seen to names in them. Where nobody can be told nothing is said.
+pub(crate) fn say(line: &str) {
+    let _ = writeln!(anstream::stderr().lock(), "{line}");
 }
 
 /// Reports a failure, and the exit code for it.
@@ -97,7 +103,11 @@ impl From<depthplanes::Error> for Failure {
 
 impl From<depthplanes_io::Error> for Failure {
     fn from(error: depthplanes_io::Error) -> Self {
-        Failure::request(error.to_string())
+        let message = error.to_string();
+        match error.kind() {
+            depthplanes_io::Error::Memory { .. } => Failure::machine(message),
+            _ => Failure::request(message),
+        }
     }
 }
 

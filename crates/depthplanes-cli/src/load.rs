@@ -8,8 +8,7 @@ use depthplanes::scene::{ScenePixels, Spec};
 use depthplanes_io::camera_file::read_camera;
 use depthplanes_io::encoding::Stereo;
 use depthplanes_io::formats::{DecodeOptions, Limits};
-use depthplanes_io::{Frame, Pixels, Provenance, ReadOptions};
-use std::io::Read;
+use depthplanes_io::{Frame, Pixels, Provenance, ReadOptions, memory};
 
 /// The flags as the reading library takes them; reads the camera file.
 ///
@@ -18,7 +17,7 @@ use std::io::Read;
 pub(crate) fn options(reading: &Reading) -> Outcome<ReadOptions> {
     let mut options = ReadOptions {
         decode: DecodeOptions {
-            limits: Limits::default(),
+            limits: Limits { max_pixels: reading.max_pixels, max_bytes: reading.max_bytes },
             member: reading.member.clone(),
             raw_size: reading.raw_size,
             luminance: false,
@@ -67,13 +66,20 @@ fn stereo(reading: &Reading, options: &ReadOptions) -> Outcome<Option<Stereo>> {
 /// What is wrong with the file or the scene.
 pub(crate) fn frame(input: &Input, options: &ReadOptions) -> Outcome<Frame> {
     match input {
-        Input::File(path) => Ok(depthplanes_io::read(path, options)?),
-        Input::Standard => Ok(depthplanes_io::decode(&standard_input()?, "-", options)?),
+        Input::File(path) => {
+            // Its bytes, the samples, the pixels and what is looked at in them.
+            let needed =
+                6 * std::fs::metadata(path).map_or(0, |about| about.len().min(options.decode.limits.max_bytes as u64));
+            memory::check(needed, needed)?;
+            depthplanes_io::read(path, options).map_err(refusal)
+        }
+        Input::Standard => depthplanes_io::read_stream(std::io::stdin().lock(), "-", options).map_err(refusal),
         Input::Scene(spec) => {
             let mut frame = scene(spec)?;
             let ReadOptions { noise, smooth_noise, .. } = *options;
             (frame.sensor.noise, frame.sensor.smooth_noise) = (noise, smooth_noise);
-            if *options != (ReadOptions { noise, smooth_noise, ..ReadOptions::default() }) {
+            let decode = DecodeOptions { limits: options.decode.limits, ..DecodeOptions::default() };
+            if *options != (ReadOptions { noise, smooth_noise, decode, ..ReadOptions::default() }) {
                 frame
                     .warnings
                     .push("a made-up scene knows its own unit and camera: flags on reading are not used".into());
@@ -83,18 +89,25 @@ pub(crate) fn frame(input: &Input, options: &ReadOptions) -> Outcome<Frame> {
     }
 }
 
-/// All of standard input, up to the limit of a file.
-fn standard_input() -> Outcome<Vec<u8>> {
-    let most = Limits::default().max_bytes as u64 + 1;
-    let mut bytes = Vec::new();
-    let failed = |error| Failure::request(format!("-: standard input cannot be read: {error}"));
-    std::io::stdin().lock().take(most).read_to_end(&mut bytes).map_err(failed)?;
-    Ok(bytes)
+/// What is wrong with a map; for limits, the flag that raises them.
+fn refusal(error: depthplanes_io::Error) -> Failure {
+    let flag = match error.kind() {
+        depthplanes_io::Error::Limit { what, .. } if what.contains("pixels") => Some("--max-pixels"),
+        depthplanes_io::Error::Limit { .. } => Some("--max-bytes"),
+        _ => None,
+    };
+    match flag {
+        Some(flag) => Failure::request(format!("{error}; if the file is trusted, raise it with {flag} N")),
+        None => error.into(),
+    }
 }
 
 /// A made-up scene as a frame; it knows its own unit and camera.
 pub(crate) fn scene(spec: &str) -> Outcome<Frame> {
-    let scene = spec.parse::<Spec>()?.frame()?;
+    let spec = spec.parse::<Spec>()?;
+    let needed = 64 * (spec.width * spec.height) as u64;
+    memory::check(needed, needed)?;
+    let scene = spec.frame()?;
     let pixels = match scene.pixels {
         ScenePixels::U8(pixels) => Pixels::U8(pixels),
         ScenePixels::U16(pixels) => Pixels::U16(pixels),

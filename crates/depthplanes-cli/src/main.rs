@@ -13,7 +13,9 @@ mod pairs;
 mod pool;
 mod run;
 mod show;
+mod signals;
 mod table;
+mod terminal;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -24,8 +26,12 @@ use std::process::ExitCode;
 static ALLOCATOR: dlmalloc::GlobalDlmalloc = dlmalloc::GlobalDlmalloc;
 
 fn main() -> ExitCode {
-    let command = args::parse();
-    let mut out = std::io::BufWriter::new(std::io::stdout());
+    signals::prepare();
+    let command = match args::parse() {
+        Ok(command) => command,
+        Err(ended) => return ended,
+    };
+    let mut out = terminal::Plain(std::io::BufWriter::new(std::io::stdout()));
     let outcome = commands::run(&command, &mut out);
     let flushed = out.flush().map_err(failure::Failure::from);
     failure::exit_code(outcome.and(flushed))

@@ -1,11 +1,24 @@
 //! Work on many inputs at once with results in the order of the inputs.
 
+use crate::failure::note;
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 
-/// Works on items `0..count` on up to `jobs` threads; each thread makes its own worker. `sink` gets
-/// the results in order, on the calling thread, as early as the order allows.
+/// How many threads a map can have: what was wanted, or one if the machine makes no more, and a note says so.
+pub(crate) fn threads(wanted: usize) -> usize {
+    static POOL: OnceLock<bool> = OnceLock::new();
+    let make = || {
+        let made = rayon::ThreadPoolBuilder::new().build_global();
+        let tell = |error| note(&format!("threads cannot be made ({error}); each map is worked on by one"));
+        made.map_err(tell).is_ok()
+    };
+    if wanted > 1 && *POOL.get_or_init(make) { wanted } else { 1 }
+}
+
+/// Works on items `0..count` on up to `jobs` threads, fewer if the machine makes no more; each thread makes its own
+/// worker. `sink` gets the results in order, on the calling thread, as early as the order allows.
 ///
 /// # Errors
 /// The first error of `sink`; no item is begun after it.
@@ -15,12 +28,16 @@ pub(crate) fn in_order<R: Send, W: FnMut(usize) -> R, E>(
     worker: impl Fn() -> W + Sync,
     mut sink: impl FnMut(usize, R) -> Result<(), E>,
 ) -> Result<(), E> {
+    let jobs = jobs.min(count);
+    if jobs < 2 {
+        return one_by_one(count, worker, sink);
+    }
     let next = AtomicUsize::new(0);
     let (sender, receiver) = mpsc::channel();
     std::thread::scope(|scope| {
-        for _ in 0..jobs.min(count) {
+        for made in 0..jobs {
             let (sender, next, worker) = (sender.clone(), &next, &worker);
-            scope.spawn(move || {
+            let started = std::thread::Builder::new().spawn_scoped(scope, move || {
                 let mut work = worker();
                 loop {
                     let item = next.fetch_add(1, Ordering::Relaxed);
@@ -29,12 +46,29 @@ pub(crate) fn in_order<R: Send, W: FnMut(usize) -> R, E>(
                     }
                 }
             });
+            if let Err(error) = started {
+                note(&format!("only {made} of {jobs} threads can be made ({error}); it takes longer"));
+                if made == 0 {
+                    return one_by_one(count, worker, sink);
+                }
+                break;
+            }
         }
         drop(sender);
         let outcome = deliver(receiver, &mut sink);
         next.store(count, Ordering::Relaxed);
         outcome
     })
+}
+
+/// Does all of it on the calling thread.
+fn one_by_one<R, W: FnMut(usize) -> R, E>(
+    count: usize,
+    worker: impl Fn() -> W,
+    mut sink: impl FnMut(usize, R) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut work = worker();
+    (0..count).try_for_each(|item| sink(item, work(item)))
 }
 
 fn deliver<R, E>(

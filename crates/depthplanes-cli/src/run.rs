@@ -1,11 +1,12 @@
 //! One map through the pipeline: which method with which parameters, and how long it takes.
 
 use crate::failure::{Failure, Outcome};
+use crate::pool;
 use depthplanes::methods::{self, METHODS, MethodInfo};
 use depthplanes::outline::{Outliner, Outlines};
 use depthplanes::{AnyView, Coplanar, Detection, Detector, Sensor};
-use depthplanes_io::Frame;
 use depthplanes_io::outputs::{Spread, Times};
+use depthplanes_io::{Frame, memory};
 use std::time::Instant;
 
 /// The stage that makes outlines, after the method's own.
@@ -42,6 +43,7 @@ impl Recipe {
             values[at.ok_or_else(|| lacks(method, name))?] = value;
         }
         drop(method.with(given)?); // they are checked
+        let threads = pool::threads(threads);
         Ok(Recipe { method, values, threads, coplanar: None, outlines: None, curved: false })
     }
 
@@ -106,6 +108,21 @@ impl Recipe {
         all.map(|(param, value)| format!("{} {value}", param.name)).collect::<Vec<_>>().join(", ")
     }
 
+    /// Refuses a map that there is no memory to look at.
+    ///
+    /// # Errors
+    /// Says how much is needed.
+    pub(crate) fn check_memory(&self, frame: &Frame) -> Outcome {
+        // Bytes a pixel as measured on maps of 3 and 12 million pixels. The two reserve for the worst map and use little.
+        let (used, reserved) = match self.method.name {
+            "planar" => (24, 264),
+            "ngaf" => (16, 64),
+            _ => (144, 144),
+        };
+        let pixels = (frame.width * frame.height) as u64;
+        Ok(memory::check(used * pixels, reserved * pixels)?)
+    }
+
     fn outliner(&self) -> Outcome<Option<Outliner>> {
         Ok(self.outlines.map(Outliner::new).transpose()?)
     }
@@ -163,6 +180,7 @@ impl<'a> Runner<'a> {
             self.sensor = frame.sensor;
             self.detector = self.recipe.detector(self.sensor);
         }
+        self.recipe.check_memory(frame)?;
         let view = frame.view()?;
         let detection = self.detector.detect(view)?.clone();
         let camera = self.sensor.intrinsics;

@@ -1,6 +1,7 @@
 //! A report for people: what was read, what was found, and what to try if that is little.
 
 use crate::table::{Align, aligned, row};
+use crate::terminal::plain;
 use depthplanes::detection::Curved;
 use depthplanes::{Detection, Measure, Plane};
 use depthplanes_io::outputs::{Report, Times, noise_in_words};
@@ -11,7 +12,7 @@ pub(crate) fn summary(report: &Report<'_>) -> String {
     let valid = percent(detection.valid_pixels as f64 / (frame.width * frame.height).max(1) as f64);
     let mut text = format!(
         "{}: {} x {}, {}, {} ({}), {valid} valid\n",
-        report.source,
+        plain(report.source),
         frame.width,
         frame.height,
         frame.format,

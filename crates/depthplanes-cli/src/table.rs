@@ -1,5 +1,8 @@
 //! Text in columns.
 
+use crate::terminal::plain;
+use std::borrow::Cow;
+
 /// How a column's cells stand in it.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Align {
@@ -7,13 +10,14 @@ pub(crate) enum Align {
     Right,
 }
 
-/// Lines of cells padded to columns; the first row is the heading. Nothing trails a line.
+/// Lines of cells padded to columns; the first row is the heading. Nothing trails a line, and each cell is in one.
 pub(crate) fn aligned(columns: &[Align], rows: &[Vec<String>]) -> String {
+    let rows: Vec<Vec<_>> = rows.iter().map(|row| row.iter().map(|cell| plain(cell)).collect()).collect();
     let widest = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns.len()).map(widest).collect();
     let mut text = String::new();
-    for row in rows {
-        let cell = |(column, cell): (usize, &String)| match columns[column] {
+    for row in &rows {
+        let cell = |(column, cell): (usize, &Cow<'_, str>)| match columns[column] {
             Align::Left => format!("{cell:<width$}", width = widths[column]),
             Align::Right => format!("{cell:>width$}", width = widths[column]),
         };

@@ -275,7 +275,10 @@ fn disparities_with_a_rig_become_metric() {
 fn where_no_plane_is_found_it_says_what_to_try() {
     let bench = Bench::with_map("no_plane");
     let ran = bench.run(&["detect", "map.pgm", "--min", "100000"]);
-    assert!(ran.err.contains("no plane found by planar (min 100000), noise estimated; `depthplanes params planar`"), "{ran:?}");
+    assert!(
+        ran.err.contains("no plane found by planar (min 100000), noise estimated; `depthplanes params planar`"),
+        "{ran:?}"
+    );
     assert!(ran.ok().contains("0 planes"));
     bench.write("empty.pgm", &[b"P5 4 2 65535\n".to_vec(), vec![0; 16]].concat());
     let ran = bench.run(&["detect", "empty.pgm"]);

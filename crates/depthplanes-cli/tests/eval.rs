@@ -125,3 +125,127 @@ fn frames_of_real_cameras_are_measured(bench: &Bench, all: &[Value]) {
     let report = String::from_utf8(bench.read("report/report.html")).unwrap();
     assert!(report.contains("10k correct %") && report.contains("from frame to frame"));
 }
+
+/// Runs `eval` over a folder of depth maps by name; the label image of each map and what it came to.
+#[cfg(unix)]
+fn of_folder(bench: &Bench, folder: &str, names: &[&[u8]], sizes: [[u16; 2]; 2]) -> Vec<Value> {
+    use std::os::unix::ffi::OsStrExt;
+    std::fs::create_dir_all(bench.folder.join(folder)).unwrap();
+    for (at, name) in names.iter().enumerate() {
+        // Planes of the left and the right part, or of the upper and the lower: labels differ.
+        let [width, height] = sizes[at % 2];
+        let mut map = format!("P5 {width} {height} 65535\n").into_bytes();
+        let far = |u: u16, v: u16| if at.is_multiple_of(2) { u >= width / 2 } else { v >= height / 2 };
+        let pixels = (0..height).flat_map(|v| (0..width).map(move |u| (u, v)));
+        map.extend(pixels.flat_map(|(u, v)| (1000 + 500 * u16::from(far(u, v))).to_be_bytes()));
+        std::fs::write(bench.folder.join(folder).join(std::ffi::OsStr::from_bytes(name)), map).unwrap();
+    }
+    let report = format!("report_{folder}");
+    bench.run(&["eval", &format!("kinect={folder}"), "--repeat", "1", "--report", &report]).ok();
+    rows(bench, &format!("{report}/rows.jsonl"))
+}
+
+#[cfg(unix)]
+#[test]
+fn maps_whose_names_are_almost_the_same_have_label_images_of_their_own() {
+    let bench = Bench::new("eval_names");
+    let long = |last: &str| "depth".repeat(48) + last + ".png";
+    let (long, longer) = (long("a"), long("b"));
+    let names: [&[u8]; 10] = [
+        b"x<depth.png",
+        b"x>depth.png",
+        b"x_depth.png",
+        b"X_depth.png",
+        b"x\ndepth.png",
+        b"x depth.png",
+        b"\xffdepth.png",
+        b"\xfedepth.png",
+        long.as_bytes(),
+        longer.as_bytes(),
+    ];
+    for (folder, sizes) in [("equal", [[40, 30], [40, 30]]), ("other", [[40, 30], [50, 20]])] {
+        let all = of_folder(&bench, folder, &names, sizes);
+        assert_eq!(all.len(), names.len());
+        let mut files = BTreeSet::new();
+        for row in &all {
+            let file = row["outcome"]["found"]["labels"].as_str().unwrap();
+            assert!(files.insert(file.to_lowercase()), "{file} twice");
+            let path = bench.folder.join(format!("report_{folder}")).join(file);
+            let image = depthplanes_io::read_labels(path, &Default::default()).unwrap();
+            assert_eq!(serde_json::json!([image.width, image.height]), row["size"]);
+        }
+        let again =
+            bench.run(&["eval", &format!("kinect={folder}"), "--repeat", "1", "--report", &format!("report_{folder}")]);
+        assert!(again.err.contains("10 of 10 results are there already"), "{again:?}");
+    }
+}
+
+#[test]
+fn rows_that_share_a_label_image_are_made_anew() {
+    let bench = Bench::new("eval_shared");
+    let words = ["eval", "scene:planes3:seed=1-2,size=160x120", "--repeat", "1", "--report", "report"];
+    bench.run(&words).ok();
+    let all = rows(&bench, "report/rows.jsonl");
+    let file = |row: &Value| row["outcome"]["found"]["labels"].as_str().unwrap().to_string();
+    let text = String::from_utf8(bench.read("report/rows.jsonl")).unwrap();
+    bench.write("report/rows.jsonl", text.replace(&file(&all[0]), &file(&all[1])).as_bytes());
+    bench.run(&words).ok();
+    let again = bench.run(&words);
+    assert!(again.err.contains("2 of 2 results are there already"), "{again:?}");
+}
+
+#[test]
+fn torn_lines_are_set_aside_and_made_anew() {
+    let bench = Bench::new("eval_torn");
+    let words = ["eval", "scene:planes3:seed=1-4,size=160x120", "--repeat", "1", "--report", "report"];
+    bench.run(&words).ok();
+    let whole = bench.read("report/rows.jsonl");
+    let lines: Vec<&[u8]> = whole.split_inclusive(|&byte| byte == b'\n').collect();
+    let half = |at: usize| &lines[at][..lines[at].len() / 2];
+    let torn: [Vec<u8>; 5] = [
+        [half(0), b"\n", lines[1], lines[2], lines[3]].concat(),
+        [lines[0], half(1), lines[2], lines[3]].concat(),
+        [lines[0], lines[1], lines[2], half(3)].concat(),
+        [&whole[..], b"0.1579408113302188}}}\n"].concat(),
+        [lines[0], b"\0\0\xff\0\n", lines[2], lines[3]].concat(),
+    ];
+    for (at, text) in torn.iter().enumerate() {
+        let _ = std::fs::remove_file(bench.folder.join("report/rows.torn.jsonl"));
+        bench.write("report/rows.jsonl", text);
+        let ran = bench.run(&words);
+        assert!(ran.err.contains("set aside in report/rows.torn.jsonl"), "{at}: {ran:?}");
+        ran.ok();
+        assert_eq!(rows(&bench, "report/rows.jsonl").len(), 4, "{at}");
+        let aside = bench.read("report/rows.torn.jsonl");
+        assert!(!aside.is_empty() && aside.ends_with(b"\n"), "{at}");
+        let again = bench.run(&words);
+        assert!(
+            again.err.contains("4 of 4 results are there already") && !again.err.contains("torn"),
+            "{at}: {again:?}"
+        );
+    }
+    let Some(data) = support::data() else { return };
+    let text = std::fs::read(data.join("reports/faults/eval-torn/rows.jsonl")).unwrap();
+    bench.write("report/rows.jsonl", &text);
+    let ran = bench.run(&words);
+    assert!(ran.err.contains("torn, and no row: line 25;"), "{ran:?}");
+    ran.ok();
+    assert_eq!(rows(&bench, "report/rows.jsonl").len(), 28);
+}
+
+#[test]
+fn one_run_at_a_time_writes_into_a_report() {
+    let bench = Bench::new("eval_lock");
+    let words = ["eval", "scene:room:seed=1-200,size=320x240", "--report", "report"];
+    let mut first = bench.command().args(words).stdout(std::process::Stdio::null()).spawn().unwrap();
+    let start = std::time::Instant::now();
+    while !bench.folder.join("report/rows.jsonl").exists() && start.elapsed().as_secs() < 60 {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    let said = bench.run(&["eval", "scene:planes3:size=160x120", "--report", "report"]).fails(2);
+    assert!(said.contains(&format!("another run (process {}) writes into this folder", first.id())), "{said}");
+    first.kill().unwrap();
+    first.wait().unwrap();
+    // The lock goes with the process.
+    bench.run(&["eval", "scene:planes3:size=160x120", "--report", "report"]).ok();
+}

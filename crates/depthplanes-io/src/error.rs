@@ -28,7 +28,7 @@ pub enum Error {
         accepted: &'static str,
     },
     /// The input asks for more than the stated limit.
-    #[error("{what} is {given}, the limit is {limit}; raise the limit if the file is trusted")]
+    #[error("{what} is {given}, the limit is {limit}")]
     Limit {
         /// The quantity.
         what: &'static str,
@@ -36,6 +36,14 @@ pub enum Error {
         given: u64,
         /// The most that is allowed.
         limit: u64,
+    },
+    /// Memory that cannot be had.
+    #[error("{} of {what} are needed and cannot be had; free some, or raise the limit of the process (ulimit -v)", megabytes(*bytes))]
+    Memory {
+        /// Memory, or address space.
+        what: &'static str,
+        /// How many bytes are needed at once.
+        bytes: u64,
     },
     /// An option's value, or a combination of options.
     #[error("{option} is `{given}`; accepted: {accepted}")]
@@ -72,6 +80,14 @@ impl Error {
         }
     }
 
+    /// The same error of a file whose name was not known yet.
+    pub(crate) fn named(self, path: &str) -> Error {
+        match self {
+            Error::Io { source, .. } => Error::Io { path: path.to_string(), source },
+            error => error.in_file(path),
+        }
+    }
+
     /// The error without the file's name, to match on.
     pub fn kind(&self) -> &Error {
         match self {
@@ -84,4 +100,9 @@ impl Error {
     pub fn parameter(option: &'static str, given: impl ToString, accepted: impl ToString) -> Error {
         Error::Parameter { option, given: given.to_string(), accepted: accepted.to_string() }
     }
+}
+
+/// Bytes as people count them.
+fn megabytes(bytes: u64) -> String {
+    format!("{} MB", bytes.div_ceil(1_000_000))
 }

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use crate::error::{Error, Result};
-use crate::file_bytes::read_bytes;
+use crate::file_bytes::read_known;
 use crate::formats::{self, DecodeOptions};
 use crate::frame::Pixels;
 
@@ -32,7 +32,7 @@ const ACCEPTED: &str = "a label image: one channel of whole numbers from 0 (no p
 /// [`Error::Io`], and those of [`decode_labels`].
 pub fn read_labels(path: impl AsRef<Path>, options: &DecodeOptions) -> Result<LabelImage> {
     let path = path.as_ref();
-    let bytes = read_bytes(path, options.limits.max_bytes)?;
+    let bytes = read_known(path, options.limits.max_bytes, |first| formats::begins(first, options))?;
     decode_labels(&bytes, &path.display().to_string(), options)
 }
 

@@ -14,6 +14,7 @@ pub mod formats;
 mod frame;
 pub mod inspect;
 pub mod labels;
+pub mod memory;
 pub mod noise_table;
 pub mod outputs;
 pub mod presets;
@@ -27,7 +28,7 @@ pub use error::{Error, Result};
 pub use frame::{Frame, Pixels, Provenance, Source};
 pub use labels::{LabelImage, read_labels};
 pub use noise_table::read_noise_table;
-pub use read::{ReadOptions, decode, read};
+pub use read::{ReadOptions, decode, read, read_stream};
 
 /// The README's program is a documentation test.
 #[cfg(doctest)]

@@ -2,6 +2,7 @@
 //!
 //! What the user states goes before the preset, the preset before the guess.
 
+use std::io::Read;
 use std::path::Path;
 
 use depthplanes::noise::{NoiseModel, SensorNoise};
@@ -11,7 +12,7 @@ use crate::camera_file::CameraFile;
 use crate::choice::{Choice, choose};
 use crate::encoding::{Encoding, Given, Meaning, Stereo};
 use crate::error::{Error, Result};
-use crate::file_bytes::read_bytes;
+use crate::file_bytes::{self, read_known};
 use crate::formats::{self, DecodeOptions, Image};
 use crate::frame::{Frame, Pixels, Provenance, Source};
 use crate::presets::{self, PresetNoise, SensorPreset};
@@ -80,8 +81,19 @@ impl ReadOptions {
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Frame> {
     let path = path.as_ref();
     let name = path.display().to_string();
-    let bytes = read_bytes(path, options.decode.limits.max_bytes)?;
+    let bytes = read_known(path, options.decode.limits.max_bytes, |first| formats::begins(first, &options.decode))?;
     decode(&bytes, &name, options)
+}
+
+/// Reads one map from something that may have no end, such as standard input: after its first bytes it is read on only
+/// if they are of a known format. `name` is for messages only.
+///
+/// # Errors
+/// [`Error::Io`], and those of [`decode`].
+pub fn read_stream(source: impl Read, name: &str, options: &ReadOptions) -> Result<Frame> {
+    let most = options.decode.limits.max_bytes;
+    let bytes = file_bytes::read_stream(source, name, most, |first| formats::begins(first, &options.decode))?;
+    decode(&bytes, name, options)
 }
 
 /// Reads one map from bytes; `name` is for messages only.

@@ -27,6 +27,8 @@ pub(crate) struct Reading {
     pub(crate) valid_range: Option<[f64; 2]>,
     pub(crate) raw_size: Option<(usize, usize)>,
     pub(crate) member: Option<String>,
+    pub(crate) max_pixels: usize,
+    pub(crate) max_bytes: usize,
 }
 
 impl Reading {
@@ -61,6 +63,8 @@ impl Reading {
             focal: number("focal"),
             doffs: number("doffs"),
             missing: number("missing"),
+            max_pixels: *matches.get_one("max-pixels").expect("it has a default"),
+            max_bytes: *matches.get_one("max-bytes").expect("it has a default"),
             valid_range: matches.get_one("valid-range").copied(),
             raw_size: matches.get_one("raw-size").copied(),
             member: text("member"),
@@ -105,8 +109,26 @@ pub(super) fn reading() -> Vec<Arg> {
         numbers::<2>("valid-range", "LO,HI").help("Only values within this range, in map units, are valid"),
         Arg::new("raw-size").value_name("WxH").value_parser(size).help("Size of a headerless file"),
         Arg::new("member").value_name("NAME").help("The array to read from a file that holds several"),
+        limit("max-pixels", MAX_PIXELS)
+            .help("Refuse larger maps; `planar` needs 24 bytes of memory a pixel, with all outputs 64"),
+        limit("max-bytes", MAX_BYTES).help("Refuse longer files, and maps that unpack to more"),
     ];
     all.into_iter().map(|arg| with_long_name(arg).help_heading("Reading")).collect()
+}
+
+/// The most pixels of a map unless the user says otherwise, 33.5 million: a gigabyte of memory.
+pub(crate) const MAX_PIXELS: usize = 1 << 25;
+/// The most bytes of a file, 537 million: 16 for each pixel of the largest map.
+pub(crate) const MAX_BYTES: usize = 1 << 29;
+
+/// A flag that takes a limit of what is read.
+fn limit(id: &'static str, default: usize) -> Arg {
+    Arg::new(id).value_name("N").default_value(default.to_string()).value_parser(|text: &str| {
+        match text.parse::<usize>() {
+            Ok(number) if number > 0 && number < 1 << 40 => Ok(number),
+            _ => Err("accepted: a whole number from 1".to_string()),
+        }
+    })
 }
 
 /// A flag for each parameter of any method; methods share the flags of the names they share. Whose it is stands before

@@ -7,6 +7,7 @@ use crate::load;
 use crate::measures::Scores;
 use crate::run::{Recipe, Runner};
 use crate::table::{Align, aligned, row};
+use crate::terminal::plain;
 use depthplanes::metrics::{Contingency, Tolerance};
 use depthplanes::scene::Spec;
 use depthplanes_io::formats::DecodeOptions;
@@ -49,11 +50,11 @@ pub(super) fn run(wanted: &Compare, out: &mut dyn Write) -> Outcome {
     rows.extend(made.iter().map(|one| one.cells.clone()));
     let mut aligns = vec![Align::Right; rows[0].len()];
     aligns[0] = Align::Left;
-    writeln!(out, "{}: {} x {}", input.name(), frame.width, frame.height)?;
+    writeln!(out, "{}: {} x {}", plain(&input.name()), frame.width, frame.height)?;
     write!(out, "{}", aligned(&aligns, &rows))?;
     if let Some(path) = &wanted.picture {
         write_file(path, &picture(&frame, truth.as_deref(), &made)?)?;
-        writeln!(out, "wrote {}", path.display())?;
+        writeln!(out, "wrote {}", plain(&path.display().to_string()))?;
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 use crate::failure::Outcome;
 use crate::folders::make_folder;
 use crate::run::{Recipe, Runner};
+use crate::terminal::plain;
 use crate::{load, show};
 use depthplanes::Intrinsics;
 use depthplanes::methods;
@@ -51,14 +52,14 @@ fn depth_png(frame: &Frame) -> Vec<u8> {
 
 fn tell(report: &Report<'_>, depth: &Path, files: &[(&Output, PathBuf)], out: &mut dyn Write) -> Outcome {
     writeln!(out, "{}{}", show::summary(report), show::table(report, 12))?;
-    writeln!(out, "{}: the depth map, 16 bits, millimetres", depth.display())?;
+    writeln!(out, "{}: the depth map, 16 bits, millimetres", plain(&depth.display().to_string()))?;
     for (output, path) in files {
-        writeln!(out, "{}: {}", path.display(), output.about)?;
+        writeln!(out, "{}: {}", plain(&path.display().to_string()), output.about)?;
     }
     let overlay = files.iter().find(|(output, _)| output.name == "overlay");
-    let picture = overlay.map(|(_, path)| path.display().to_string()).unwrap_or_default();
+    let picture = overlay.map(|(_, path)| plain(&path.display().to_string()).into_owned()).unwrap_or_default();
     writeln!(out, "\nLook at {picture}. The same again from the file:")?;
-    write!(out, "  depthplanes detect {} --encoding millimetre", depth.display())?;
+    write!(out, "  depthplanes detect {} --encoding millimetre", plain(&depth.display().to_string()))?;
     if let Some(Intrinsics { fx, fy, cx, cy }) = report.frame.sensor.intrinsics {
         write!(out, " --intrinsics {fx},{fy},{cx},{cy}")?;
     }

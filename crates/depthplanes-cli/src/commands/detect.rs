@@ -1,16 +1,17 @@
 //! `depthplanes detect`: maps in, planes out as a table, as JSON or as files.
 
 use crate::args::Detect;
-use crate::failure::{Failure, Outcome, note};
+use crate::failure::{Failure, Outcome, note, say};
 use crate::folders::{make_folder, refuse_file};
 use crate::inputs::{self, Input};
 use crate::run::{Recipe, Runner};
+use crate::terminal::plain;
 use crate::{load, pool, show};
 use depthplanes::noise::SensorNoise;
 use depthplanes_io::outputs::{self, OUTPUTS, Output, Report};
-use depthplanes_io::{ReadOptions, doubts, read_noise_table};
+use depthplanes_io::{ReadOptions, doubts, memory, read_noise_table};
 use indicatif::{ProgressBar, ProgressStyle};
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
@@ -21,7 +22,8 @@ pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     check_outputs(wanted, &inputs)?;
     let mut options = load::options(&wanted.reading)?;
     options.noise = wanted.noise_table.as_ref().map(read_noise_table).transpose()?.map(SensorNoise::Table);
-    let plan = Plan { wanted, recipe: &recipe, options, alone: inputs.len() == 1 };
+    let files = wanted.outputs.iter().filter(|(_, path)| !is_standard_output(path)).cloned().collect();
+    let plan = Plan { wanted, files, recipe: &recipe, options, alone: inputs.len() == 1 };
     let bar = progress(inputs.len());
     let mut tally = Tally::default();
     let work = || {
@@ -44,11 +46,15 @@ pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
 struct Done {
     text: String,
     notes: Vec<String>,
+    /// An output that goes to standard output; the text goes to standard error then.
+    bytes: Option<Vec<u8>>,
 }
 
 /// What is done with each input.
 struct Plan<'a> {
     wanted: &'a Detect,
+    /// Outputs that go to files.
+    files: Vec<(&'static Output, PathBuf)>,
     recipe: &'a Recipe,
     options: ReadOptions,
     alone: bool,
@@ -73,14 +79,36 @@ impl Plan<'_> {
         };
         let doubts = doubts(&report);
         let report = Report { notes: &doubts, ..report };
-        let written = write(self.wanted, input, &report)?;
+        let bytes = match self.wanted.outputs.iter().find(|(_, path)| is_standard_output(path)) {
+            Some((output, path)) => Some((output.writer(path)?.encode)(&report)?),
+            None => None,
+        };
+        let written = self.write(input, &report)?;
         let told = frame.warnings.iter().chain(&doubts);
         let mut notes: Vec<String> = told.map(|warning| format!("{name}: {warning}")).collect();
         if self.wanted.json {
-            return Ok(Done { text: json(&report, self.alone), notes });
+            return Ok(Done { text: json(&report, self.alone), notes, bytes });
         }
         notes.extend(show::advice(&report));
-        Ok(Done { text: readable(self.wanted, &report, &written, self.alone), notes })
+        let to_files = !written.is_empty() || bytes.is_some();
+        Ok(Done { text: readable(self.wanted, &report, to_files, &written, self.alone), notes, bytes })
+    }
+
+    /// Writes the outputs that are wanted of an input; says which.
+    fn write(&self, input: &Input, report: &Report<'_>) -> Outcome<Vec<(&'static Output, PathBuf)>> {
+        let mut files = self.files.clone();
+        if let Some(folder) = &self.wanted.out_dir {
+            make_folder(folder)?;
+            let possible = OUTPUTS.iter().filter(|output| report.has_what_it_takes(output));
+            files.extend(possible.map(|output| (output, file_in(folder, input, output))));
+        }
+        if !files.is_empty() {
+            // As measured: up to 37 bytes a pixel for all outputs.
+            let needed = 40 * (report.frame.width * report.frame.height) as u64;
+            memory::check(needed, needed)?;
+        }
+        outputs::write_all(report, &files)?;
+        Ok(files)
     }
 }
 
@@ -89,30 +117,26 @@ fn json(report: &Report<'_>, alone: bool) -> String {
 }
 
 /// The table, unless the planes went to files.
-fn readable(wanted: &Detect, report: &Report<'_>, written: &[(&Output, PathBuf)], alone: bool) -> String {
+fn readable(
+    wanted: &Detect,
+    report: &Report<'_>,
+    to_files: bool,
+    written: &[(&Output, PathBuf)],
+    alone: bool,
+) -> String {
     let mut text = show::summary(report);
-    if written.is_empty() {
+    if !to_files {
         text += &show::table(report, wanted.rows);
         return if alone { text } else { text + "\n" };
     }
-    let files: Vec<String> = written.iter().map(|(_, path)| path.display().to_string()).collect();
-    text += &format!("wrote {}\n", files.join(", "));
+    let files: Vec<String> = written.iter().map(|(_, path)| plain(&path.display().to_string()).into_owned()).collect();
+    if !files.is_empty() {
+        text += &format!("wrote {}\n", files.join(", "));
+    }
     if wanted.out_dir.is_some() && !report.is_metric() {
         text += "no point cloud and no mesh, since camera or unit are not known\n";
     }
     text
-}
-
-/// Writes the outputs that are wanted of an input; says which.
-fn write(wanted: &Detect, input: &Input, report: &Report<'_>) -> Outcome<Vec<(&'static Output, PathBuf)>> {
-    let mut files = wanted.outputs.clone();
-    if let Some(folder) = &wanted.out_dir {
-        make_folder(folder)?;
-        let possible = OUTPUTS.iter().filter(|output| report.has_what_it_takes(output));
-        files.extend(possible.map(|output| (output, file_in(folder, input, output))));
-    }
-    outputs::write_all(report, &files)?;
-    Ok(files)
 }
 
 fn file_in(folder: &Path, input: &Input, output: &Output) -> PathBuf {
@@ -126,10 +150,15 @@ fn check_outputs(wanted: &Detect, inputs: &[Input]) -> Outcome {
         return Err(Failure::request(message));
     }
     for (output, path) in &wanted.outputs {
-        output.writer(path)?;
-        outputs::check_folder(path)?;
+        let writer = output.writer(path)?;
+        if is_standard_output(path) {
+            check_standard_output(wanted, output.name, !["json", "csv"].contains(&writer.extension))?;
+        } else {
+            outputs::check_folder(path)?;
+        }
     }
-    let named = wanted.outputs.iter().map(|(output, path)| (path.clone(), format!("--{}", output.name)));
+    let to_files = wanted.outputs.iter().filter(|(_, path)| !is_standard_output(path));
+    let named = to_files.map(|(output, path)| (path.clone(), format!("--{}", output.name)));
     let mut written: Vec<(PathBuf, String)> = named.collect();
     if let Some(folder) = &wanted.out_dir {
         refuse_file(folder)?;
@@ -139,6 +168,25 @@ fn check_outputs(wanted: &Detect, inputs: &[Input]) -> Outcome {
         }
     }
     Ok(outputs::check_paths(&read_paths(wanted, inputs), &written)?)
+}
+
+/// Whether an output goes to standard output: `-`, or the system's name for it.
+fn is_standard_output(path: &Path) -> bool {
+    path == Path::new("-") || path == Path::new("/dev/stdout")
+}
+
+/// Refuses a second thing on standard output, and bytes that are no text on a terminal.
+fn check_standard_output(wanted: &Detect, name: &str, is_binary: bool) -> Outcome {
+    let outputs = wanted.outputs.iter().filter(|(_, path)| is_standard_output(path)).count();
+    if outputs > 1 || wanted.json {
+        let message = "standard output takes one output, and --json is one; give the others file names";
+        return Err(Failure::request(format!("--{name} -: {message}")));
+    }
+    if is_binary && std::io::stdout().is_terminal() {
+        let message = "standard output is a terminal; send it to a file or a program, with > or |";
+        return Err(Failure::request(format!("--{name} -: {message}")));
+    }
+    Ok(())
 }
 
 /// The files that are read: inputs, camera and noise.
@@ -167,6 +215,12 @@ fn print(done: Outcome<Done>, alone: bool, tally: &mut Tally, out: &mut dyn Writ
     match done {
         Ok(done) => {
             done.notes.iter().for_each(|message| note(message));
+            if let Some(bytes) = done.bytes {
+                say(done.text.trim_end());
+                // Not text, and so not through what escapes text.
+                let mut standard = std::io::stdout().lock();
+                return Ok(standard.write_all(&bytes).and_then(|()| standard.flush())?);
+            }
             out.write_all(done.text.as_bytes())?;
             Ok(out.flush()?)
         }

@@ -9,6 +9,7 @@ use crate::inputs::{self, Input};
 use crate::load;
 use crate::run::Recipe;
 use crate::show::significant;
+use crate::terminal::plain;
 use depthplanes::Explanation;
 use depthplanes::explanation::{Finding, Quantity, Suggestion};
 use depthplanes::noise::SensorNoise;
@@ -24,6 +25,7 @@ pub(super) fn run(wanted: &Explain, out: &mut dyn Write) -> Outcome {
     let name = input.name();
     let named = |failure: Failure| failure.of_input(&name);
     let frame = load::frame(&input, &options).map_err(named)?;
+    recipe.check_memory(&frame).map_err(named)?;
     let why = recipe.detector(frame.sensor).explain(frame.view()?, wanted.at);
     let why = why.map_err(Failure::from).map_err(named)?;
     let text = if wanted.json { format!("{:#}\n", record(&name, &recipe, &why)) } else { readable(&name, &why) };
@@ -86,7 +88,7 @@ fn suggestion_record(suggestion: &Suggestion) -> Value {
 /// The findings with the stage in front, then the verdict and what to change.
 fn readable(name: &str, why: &Explanation) -> String {
     let [u, v] = why.at;
-    let mut text = format!("{name}: column {u}, row {v}, by {}\n", why.method);
+    let mut text = format!("{}: column {u}, row {v}, by {}\n", plain(name), why.method);
     let has_noise =
         why.findings.iter().flat_map(|finding| &finding.quantities).any(|of| of.unit == "standard deviations");
     if has_noise {

@@ -2,6 +2,7 @@
 
 use crate::args::Reading;
 use crate::failure::{Failure, Outcome};
+use crate::terminal::plain;
 use crate::{inputs, load};
 use depthplanes_io::inspect::{Summary, summary};
 use depthplanes_io::{Frame, ReadOptions};
@@ -64,7 +65,7 @@ fn record(name: &str, seen: &Summary) -> serde_json::Value {
 }
 
 fn readable(name: &str, frame: &Frame, seen: &Summary) -> String {
-    let mut text = format!("{name}\n");
+    let mut text = format!("{}\n", plain(name));
     let mut line = |what: &str, value: String| text += &format!("  {what:<10} {value}\n");
     line("map", format!("{} x {}, {}, format {}", seen.width, seen.height, seen.pixel_type, seen.format));
     line("encoding", encoding(seen));
@@ -83,7 +84,7 @@ fn readable(name: &str, frame: &Frame, seen: &Summary) -> String {
     }
     text += &histogram(seen);
     for warning in &seen.warnings {
-        text += &format!("  note: {warning}\n");
+        text += &format!("  note: {}\n", plain(warning));
     }
     text + "\n"
 }

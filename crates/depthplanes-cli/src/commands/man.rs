@@ -3,6 +3,7 @@
 use crate::args;
 use crate::failure::Outcome;
 use crate::folders::make_folder;
+use crate::terminal::plain;
 use depthplanes_io::outputs::write_file;
 use std::io::Write;
 use std::path::Path;
@@ -16,5 +17,5 @@ pub(super) fn run(out_dir: Option<&Path>, out: &mut dyn Write) -> Outcome {
     for (name, page) in &pages {
         write_file(&folder.join(name), page)?;
     }
-    Ok(writeln!(out, "{} pages in {}", pages.len(), folder.display())?)
+    Ok(writeln!(out, "{} pages in {}", pages.len(), plain(&folder.display().to_string()))?)
 }

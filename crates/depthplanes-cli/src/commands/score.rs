@@ -5,6 +5,7 @@ use crate::failure::{Failure, Outcome, note};
 use crate::measures::{MEASURES, Measure, Scores, decimal, families};
 use crate::pairs::{self, Pair, Truth};
 use crate::table::{Align, aligned, row};
+use crate::terminal::plain;
 use depthplanes::metrics::{Contingency, SegComp, Split, Tolerance};
 use depthplanes::scene::Spec;
 use depthplanes_io::formats::DecodeOptions;
@@ -83,7 +84,8 @@ fn read(path: &std::path::Path) -> Outcome<LabelImage> {
 /// A line for each measure.
 fn one_pair(scored: &Scored) -> String {
     let (width, height) = scored.size;
-    let (truth, prediction) = (scored.pair.truth.name(), scored.pair.prediction.display());
+    let (truth, prediction) = (scored.pair.truth.name(), scored.pair.prediction.display().to_string());
+    let (truth, prediction) = (plain(&truth), plain(&prediction));
     let mut rows = vec![row(["measure", "", "value", "meaning"])];
     rows.extend(
         MEASURES

@@ -3,6 +3,7 @@
 //! `words -> datasets -> tasks -> rows -> report`: a task is a map and a method; a row, once made, is on the disk, and
 //! an evaluation that is started again goes on from there. The report is made of the rows alone.
 
+mod claim;
 pub(crate) mod datasets;
 mod machine;
 pub(crate) mod paper;
@@ -33,7 +34,7 @@ pub(crate) fn run(wanted: &Eval, out: &mut dyn Write) -> Outcome {
     tasks.extend(tasks::of_peers(&items, &peers, pace.repeat));
     // The methods of a map together: what else the machine does in the meantime meets all of them.
     tasks.sort_by_key(|task| std::ptr::from_ref(task.item));
-    let store = tasks::make(&tasks, pace, &wanted.report)?;
+    let (_claim, store) = tasks::make(&tasks, pace, &wanted.report)?;
     let rows: Vec<&Row> = tasks.iter().filter_map(|task| store.get(&task.key)).collect();
     let sections = report::by_dataset(&wanted.report, &rows, &items)?;
     report::write("Evaluation", &wanted.report, &rows, &sections, out)

@@ -1,11 +1,12 @@
 //! What a method made of a map, as a line of JSON; and the file of such lines that an interrupted evaluation goes on from.
 
-use crate::failure::{Failure, Outcome};
+use crate::failure::{Failure, Outcome, note};
+use depthplanes_io::outputs::write_file;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashMap};
 use std::fs::{File, OpenOptions};
-use std::io::{Read, Seek, SeekFrom, Write};
-use std::path::Path;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
 
 /// Which map and which method with which parameters: what makes a row the same when it is made again.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -73,7 +74,8 @@ pub(crate) struct Store {
 }
 
 impl Store {
-    /// Opens the file, or begins one. A last line that is cut off, as by an interruption, goes.
+    /// Opens the file, or begins one. Lines that are torn, as by an interruption or by two writers, go to a file beside it,
+    /// and a note says so.
     ///
     /// # Errors
     /// A file that cannot be read or written, or that holds something else.
@@ -81,18 +83,36 @@ impl Store {
         let failed = |error| Failure::machine(format!("{}: {error}", path.display()));
         let mut file =
             OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(failed)?;
-        let mut text = String::new();
-        file.read_to_string(&mut text).map_err(failed)?;
-        let whole = text.rfind('\n').map_or(0, |end| end + 1);
-        let mut rows = HashMap::new();
-        for (number, line) in text[..whole].lines().enumerate() {
-            let row: Row = serde_json::from_str(line).map_err(|error| {
-                let message = "is no row of an evaluation; take another folder, or move the file away";
-                Failure::request(format!("{}: line {}: {message} ({error})", path.display(), number + 1))
-            })?;
-            rows.insert(row.key.clone(), row);
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).map_err(failed)?;
+        let (mut rows, mut whole, mut torn) = (HashMap::new(), Vec::new(), Vec::new());
+        for (number, line) in (1..).zip(bytes.split_inclusive(|&byte| byte == b'\n')) {
+            match serde_json::from_slice::<Row>(line) {
+                Ok(row) => {
+                    whole.extend([line.trim_ascii_end(), b"\n"].concat());
+                    rows.insert(row.key.clone(), row);
+                }
+                Err(error) => torn.push((number, line, error)),
+            }
         }
-        file.set_len(whole as u64).map_err(failed)?;
+        if let (Some((number, _, error)), true, true) = (torn.first(), rows.is_empty(), bytes.contains(&b'\n')) {
+            let message = "is no row of an evaluation; take another folder, or move the file away";
+            return Err(Failure::request(format!("{}: line {number}: {message} ({error})", path.display())));
+        }
+        if !torn.is_empty() {
+            set_aside(path, &torn.iter().map(|(_, line, _)| *line).collect::<Vec<_>>()).map_err(failed)?;
+            let numbers: Vec<String> = torn.iter().map(|(number, ..)| number.to_string()).collect();
+            note(&format!(
+                "{}: torn, and no row: line {}; set aside in {}, and what is missing is done anew",
+                path.display(),
+                numbers.join(", "),
+                beside(path).display()
+            ));
+        }
+        if whole != bytes {
+            write_file(path, &whole)?;
+            file = OpenOptions::new().read(true).write(true).open(path).map_err(failed)?;
+        }
         file.seek(SeekFrom::End(0)).map_err(failed)?;
         Ok(Store { file, rows })
     }
@@ -100,6 +120,17 @@ impl Store {
     /// The row of a key, if it was made.
     pub(crate) fn get(&self, key: &Key) -> Option<&Row> {
         self.rows.get(key)
+    }
+
+    /// Whether no row of another map or method names the label image of this one.
+    pub(crate) fn has_own_labels(&self, row: &Row) -> bool {
+        let Made::Found(Found { labels, .. }) = &row.outcome else { return true };
+        let what = |row: &Row| {
+            let Key { dataset, map, method, parameters, .. } = row.key.clone();
+            [dataset, map, method, parameters]
+        };
+        let is_same = |other: &Row| matches!(&other.outcome, Made::Found(found) if found.labels == *labels);
+        !self.rows.values().any(|other| is_same(other) && what(other) != what(row))
     }
 
     /// Adds a row; when this returns it is on the disk.
@@ -116,6 +147,21 @@ impl Store {
     }
 }
 
+/// Where torn lines of a file go: `rows.torn.jsonl` for `rows.jsonl`.
+fn beside(path: &Path) -> PathBuf {
+    path.with_extension("torn.jsonl")
+}
+
+/// Adds lines to the file beside.
+fn set_aside(path: &Path, lines: &[&[u8]]) -> io::Result<()> {
+    let mut file = OpenOptions::new().append(true).create(true).open(beside(path))?;
+    for line in lines {
+        file.write_all(line)?;
+        file.write_all(if line.ends_with(b"\n") { b"" } else { b"\n" })?;
+    }
+    file.sync_all()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -128,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_come_back_and_a_line_that_was_cut_off_goes() {
+    fn rows_come_back_and_a_line_that_was_cut_off_is_set_aside() {
         let folder = std::env::temp_dir().join(format!("depthplanes-rows-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         let path = folder.join("rows.jsonl");
@@ -144,6 +190,8 @@ mod tests {
         store.add(row("b")).unwrap();
         drop(store);
         assert_eq!(std::fs::read_to_string(&path).unwrap(), whole);
+        let torn = std::fs::read_to_string(folder.join("rows.torn.jsonl")).unwrap();
+        assert!(whole.contains(torn.trim_end()) && torn.ends_with('\n'), "{torn}");
         std::fs::write(&path, "not a row\n").unwrap();
         assert!(Store::open(&path).is_err());
         std::fs::remove_dir_all(&folder).unwrap();

@@ -52,10 +52,10 @@ impl Maker<'_> {
 const TOLERANCES: [f64; 10] = [0.51, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
 
 impl Task<'_> {
-    /// Whether its row is there, and its labels are.
+    /// Whether its row is there, and its labels are and no other's.
     pub(super) fn is_done(&self, store: &Store, folder: &Path) -> bool {
         store.get(&self.key).is_some_and(|row| match &row.outcome {
-            Made::Found(found) => folder.join(&found.labels).is_file(),
+            Made::Found(found) => folder.join(&found.labels).is_file() && store.has_own_labels(row),
             Made::Refused(_) => true,
         })
     }
@@ -95,17 +95,33 @@ impl Task<'_> {
         Ok(Row { key, machine, date, jobs, size, valid_pixels, outcome })
     }
 
-    /// Within the report's folder; a name for each key.
+    /// Within the report's folder.
     fn labels_file(&self) -> String {
-        let Key { dataset, map, method, parameters, .. } = &self.key;
-        let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-        let name: String = format!("{dataset}.{map}.{method}").chars().map(plain).collect();
-        // FNV-1a: parameters are told apart without their whole text in the name.
-        let hash = parameters
-            .bytes()
-            .fold(0xcbf2_9ce4_8422_2325u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
-        format!("{LABELS}/{name}.{:08x}.png", hash as u32)
+        format!("{LABELS}/{}", labels_name(&self.key))
     }
+}
+
+/// Names longer than this are cut; file systems take 255 bytes.
+const LONGEST: usize = 120;
+
+/// The name of the label image of a key, which no other key has: what is not lower-case ASCII is replaced, and a
+/// checksum of the whole tells names apart that are alike then, also where capitals are not told apart.
+fn labels_name(key: &Key) -> String {
+    let Key { dataset, map, method, parameters, .. } = key;
+    let is_plain = |c: char| matches!(c, 'a'..='z' | '0'..='9' | '-' | '_' | '.');
+    let whole = format!("{dataset}.{map}.{method}");
+    let mut name: String =
+        whole.chars().take(LONGEST).map(|c| if is_plain(c) || c.is_ascii_uppercase() { c } else { '_' }).collect();
+    // Dots part the name; the map may have some of its own.
+    if name != whole || !whole.chars().all(is_plain) || dataset.contains('.') || method.contains('.') {
+        name += &format!(".{:016x}", fnv(&format!("{dataset}\n{map}\n{method}")));
+    }
+    format!("{name}.{:08x}.png", fnv(parameters) as u32)
+}
+
+/// FNV-1a.
+fn fnv(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 fn valid_pixels(frame: &Frame) -> Outcome<usize> {
@@ -145,4 +161,30 @@ fn normal_error(truth: &TruthOf, detection: &Detection, table: &Contingency) -> 
         plane_errors(&evops(table).matched, known, found).iter().map(|(_, error)| error.normal_deg).collect();
     errors.sort_by(f64::total_cmp);
     errors.get(errors.len() / 2).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn key(dataset: &str, map: &str) -> Key {
+        let [method, parameters, version] = ["planar", "min 100", "v"].map(str::to_string);
+        Key { dataset: dataset.into(), map: map.into(), label: method.clone(), method, parameters, version, repeat: 1 }
+    }
+
+    #[test]
+    fn every_map_has_a_label_file_of_its_own_and_plain_names_are_as_they_are() {
+        assert_eq!(labels_name(&key("scenes", "room-1.a_b")), "scenes.room-1.a_b.planar.648729ec.png");
+        let long = "x".repeat(240);
+        let other = format!("{long}y");
+        let maps =
+            ["x<depth", "x>depth", "x_depth", "X_depth", "x_Depth", "x depth", "xä", "xö", "\\xff", &long, &other];
+        let mut names: Vec<String> = maps.iter().map(|map| labels_name(&key("kinect", map)).to_lowercase()).collect();
+        names.push(labels_name(&key("kinect.x", "y")));
+        names.push(labels_name(&key("kinect", "x.y")));
+        assert!(names.iter().all(|name| name.len() < 200 && name.is_ascii()), "{names:?}");
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), maps.len() + 2, "{names:?}");
+    }
 }

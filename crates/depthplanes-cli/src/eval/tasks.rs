@@ -1,14 +1,16 @@
 //! All tasks of an evaluation: every map by every method or peer, and the rows that come of them.
 
+use super::claim::Claim;
 use super::datasets::Item;
 use super::machine;
 use super::peers::{Listed, Peer};
 use super::rows::{Key, Store};
 use super::task::{LABELS, Maker, Task};
-use crate::failure::{Failure, Outcome, note};
+use crate::failure::{Outcome, note};
 use crate::folders::make_folder;
 use crate::pool;
 use crate::run::Recipe;
+use crate::terminal::plain;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::Path;
 
@@ -55,12 +57,13 @@ pub(super) fn of_peers<'a>(items: &'a [Item], peers: &'a [Peer], repeat: usize) 
     items.iter().flat_map(|item| peers.iter().map(move |peer| (item, peer))).map(task).collect()
 }
 
-/// Does the tasks that have no row yet; each row is kept as soon as it is made.
+/// Does the tasks that have no row yet; each row is kept as soon as it is made. The folder is claimed for this run.
 ///
 /// # Errors
-/// A folder that cannot be written to, a map that cannot be read.
-pub(super) fn make(tasks: &[Task<'_>], pace: Pace, folder: &Path) -> Outcome<Store> {
+/// A folder that cannot be written to or that another run writes into, a map that cannot be read.
+pub(super) fn make(tasks: &[Task<'_>], pace: Pace, folder: &Path) -> Outcome<(Claim, Store)> {
     make_folder(&folder.join(LABELS))?;
+    let claim = Claim::of(folder)?;
     let mut store = Store::open(&folder.join("rows.jsonl"))?;
     let open: Vec<&Task<'_>> = tasks.iter().filter(|task| !task.is_done(&store, folder)).collect();
     if open.len() < tasks.len() {
@@ -79,10 +82,10 @@ pub(super) fn make(tasks: &[Task<'_>], pace: Pace, folder: &Path) -> Outcome<Sto
         move |at: usize| open[at].run(folder, machine, pace.jobs)
     };
     pool::in_order(open.len(), pace.jobs, worker, |at, row| {
-        bar.set_message(format!("{} {}", open[at].key.map, open[at].key.label));
+        bar.set_message(plain(&format!("{} {}", open[at].key.map, open[at].key.label)).into_owned());
         bar.inc(1);
         store.add(row?)
     })?;
     bar.finish_and_clear();
-    Ok::<Store, Failure>(store)
+    Ok((claim, store))
 }

@@ -44,6 +44,13 @@ impl Bench {
         Ran::from(output)
     }
 
+    /// Runs a line of the shell, in which `$DP` is the program.
+    pub fn shell(&self, line: &str) -> Ran {
+        let mut command = self.command_of("sh");
+        command.args(["-c", line]).env("DP", env!("CARGO_BIN_EXE_depthplanes")).env_remove("RUST_BACKTRACE");
+        Ran::from(command.stdin(Stdio::null()).output().unwrap())
+    }
+
     /// Runs the program with these words, kills it once `report/rows.jsonl` has three rows, and lets it go on to the end:
     /// no row is made again, and of the same rows, `count`, a further run makes the same report.
     pub fn kill_and_go_on(&self, words: &[&str], count: usize) {

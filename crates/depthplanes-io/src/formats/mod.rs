@@ -60,6 +60,17 @@ pub fn sniff(bytes: &[u8]) -> Result<&'static Format> {
     FORMATS.iter().find(|format| (format.sniff)(bytes)).ok_or_else(|| unsupported::explain(bytes))
 }
 
+/// Whether bytes can be the beginning of a map, of which more may come.
+///
+/// # Errors
+/// As [`sniff`].
+pub(crate) fn begins(first: &[u8], options: &DecodeOptions) -> Result<()> {
+    if options.raw_size.is_some() || rvl::begins(first) {
+        return Ok(());
+    }
+    sniff(first).map(|_| ())
+}
+
 /// Reads a map of whatever format, or headerless samples if their size is stated.
 ///
 /// # Errors

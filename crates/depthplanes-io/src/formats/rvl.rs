@@ -35,10 +35,14 @@ fn size(bytes: &[u8]) -> Option<(u64, u64)> {
 
 /// RVL has no signature: the size must be a camera's, and the payload long enough for it.
 pub(super) fn plausible(bytes: &[u8]) -> bool {
+    let is_backed = || size(bytes).is_some_and(|(w, h)| backed(w * h, bytes));
+    bytes.len() >= 12 && bytes.len().is_multiple_of(4) && begins(bytes) && is_backed()
+}
+
+/// Whether the size is a camera's, however much comes after it.
+pub(super) fn begins(bytes: &[u8]) -> bool {
     let side = 1..=16_384;
-    bytes.len() >= 12
-        && bytes.len().is_multiple_of(4)
-        && size(bytes).is_some_and(|(w, h)| side.contains(&w) && side.contains(&h) && backed(w * h, bytes))
+    size(bytes).is_some_and(|(w, h)| side.contains(&w) && side.contains(&h))
 }
 
 fn backed(area: u64, bytes: &[u8]) -> bool {

@@ -46,6 +46,14 @@ pub enum OutputError {
         /// Its folder.
         folder: PathBuf,
     },
+    /// The path is something that is never written to.
+    #[error("{}: this is {what}, a file name is needed", path.display())]
+    Unwritable {
+        /// The path asked for.
+        path: PathBuf,
+        /// What is there: a disk, a socket.
+        what: &'static str,
+    },
     /// A detection of a map of another size.
     #[error("the map is {} x {} pixels, the detection is of one of {} x {}; give the map that was looked at", map[0], map[1], found[0], found[1])]
     Size {

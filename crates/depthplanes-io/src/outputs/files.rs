@@ -1,16 +1,12 @@
-//! Files that are whole or not there at all.
-//!
-//! Bytes go to a hidden file beside the target, which then takes the target's name in one step.
-//! Whatever fails, the hidden file is removed and what stood there before stays.
+//! Files that are whole or not there at all: what is checked before, and how several are written together.
 
+use super::destination::{Destination, destination, folder_of};
 use super::error::OutputError;
 use super::output::{Output, Report};
-use std::collections::HashMap;
-use std::ffi::OsString;
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write};
+use super::staged::Staged;
+use std::collections::{BTreeSet, HashMap};
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Writes several outputs of one frame: all are encoded before the first is written, and all are on
 /// the disk before the first takes its name.
@@ -20,28 +16,42 @@ use std::sync::atomic::{AtomicU32, Ordering};
 pub fn write_all(report: &Report<'_>, wanted: &[(&Output, PathBuf)]) -> Result<(), OutputError> {
     let encode = |(output, path): &(&Output, PathBuf)| (output.writer(path)?.encode)(report);
     let encoded = wanted.iter().map(encode).collect::<Result<Vec<_>, _>>()?;
-    let stage = |((_, path), bytes): (&(&Output, PathBuf), &Vec<u8>)| Staged::new(path, bytes);
-    let staged = wanted.iter().zip(&encoded).map(stage).collect::<Result<Vec<_>, _>>()?;
-    staged.into_iter().try_for_each(Staged::commit)
+    let files: Vec<(&Path, &[u8])> =
+        wanted.iter().zip(&encoded).map(|((_, path), bytes)| (path.as_path(), &bytes[..])).collect();
+    write_together(&files)
 }
 
-/// Writes one file, whole or not at all.
+/// Writes one file, whole or not at all. When this returns it is on the disk.
 ///
 /// # Errors
-/// [`OutputError::Write`].
+/// [`OutputError::Write`]; [`OutputError::Unwritable`] for what is no file.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
-    Staged::new(path, bytes)?.commit()
+    write_together(&[(path, bytes)])
 }
 
-/// Refuses a path that is a folder or whose folder does not exist.
+fn write_together(files: &[(&Path, &[u8])]) -> Result<(), OutputError> {
+    let staged = files.iter().map(|(path, bytes)| Staged::new(path, bytes)).collect::<Result<Vec<_>, _>>()?;
+    staged.iter().try_for_each(Staged::sync)?;
+    let folders: BTreeSet<PathBuf> = staged.iter().filter_map(Staged::folder).collect();
+    staged.into_iter().try_for_each(Staged::commit)?;
+    // The new names are on the disk when their folder is. Not every file system can do that, and the files are whole anyway.
+    folders.iter().for_each(|folder| drop(fs::File::open(folder).and_then(|folder| folder.sync_all())));
+    Ok(())
+}
+
+/// Refuses a path that is a folder, a disk or a socket, or whose folder does not exist.
 ///
 /// # Errors
-/// [`OutputError::IsFolder`], [`OutputError::NoFolder`].
+/// [`OutputError::IsFolder`], [`OutputError::NoFolder`], [`OutputError::Unwritable`].
 pub fn check_folder(path: &Path) -> Result<(), OutputError> {
-    if path.is_dir() {
+    let target = match destination(path)? {
+        Destination::Stream => return Ok(()),
+        Destination::File(target) => target,
+    };
+    if target.is_dir() {
         return Err(OutputError::IsFolder(path.to_path_buf()));
     }
-    let folder = folder_of(path);
+    let folder = folder_of(&target);
     if !folder.is_dir() {
         return Err(OutputError::NoFolder { path: path.to_path_buf(), folder: folder.to_path_buf() });
     }
@@ -57,7 +67,7 @@ pub fn check_paths(inputs: &[(PathBuf, String)], outputs: &[(PathBuf, String)]) 
     let mut taken: HashMap<PathBuf, &str> = HashMap::new();
     taken.extend(inputs.iter().map(|(path, name)| (identity(path), name.as_str())));
     for (path, name) in outputs {
-        if is_device(path) {
+        if matches!(destination(path), Ok(Destination::Stream)) {
             continue;
         }
         if let Some(first) = taken.insert(identity(path), name) {
@@ -69,74 +79,9 @@ pub fn check_paths(inputs: &[(PathBuf, String)], outputs: &[(PathBuf, String)]) 
 
 /// The one path that all spellings and links of a file share.
 fn identity(path: &Path) -> PathBuf {
-    fs::canonicalize(path).unwrap_or_else(|_| match (fs::canonicalize(folder_of(path)), path.file_name()) {
+    let Ok(Destination::File(target)) = destination(path) else { return path.to_path_buf() };
+    fs::canonicalize(&target).unwrap_or_else(|_| match (fs::canonicalize(folder_of(&target)), target.file_name()) {
         (Ok(folder), Some(name)) => folder.join(name),
-        _ => path.to_path_buf(),
+        _ => target,
     })
-}
-
-fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
-/// Something like `/dev/null` or a pipe: written to directly, never replaced.
-fn is_device(path: &Path) -> bool {
-    fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir())
-}
-
-/// A file's bytes, on the disk beside their target. Dropped before [`Staged::commit`], it leaves
-/// nothing.
-struct Staged {
-    temporary: Option<PathBuf>,
-    target: PathBuf,
-}
-
-impl Staged {
-    fn new(path: &Path, bytes: &[u8]) -> Result<Self, OutputError> {
-        let failed = |source| OutputError::Write { path: path.to_path_buf(), source };
-        if is_device(path) {
-            fs::write(path, bytes).map_err(failed)?;
-            return Ok(Staged { temporary: None, target: path.to_path_buf() });
-        }
-        // A link keeps pointing where it points: its target is what gets replaced.
-        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
-        let (mut file, temporary) = create_beside(&target).map_err(failed)?;
-        let staged = Staged { temporary: Some(temporary), target };
-        file.write_all(bytes).and_then(|()| file.flush()).map_err(failed)?;
-        Ok(staged)
-    }
-
-    fn commit(mut self) -> Result<(), OutputError> {
-        if let Some(temporary) = &self.temporary {
-            let failed = |source| OutputError::Write { path: self.target.clone(), source };
-            fs::rename(temporary, &self.target).map_err(failed)?;
-            self.temporary = None;
-        }
-        Ok(())
-    }
-}
-
-impl Drop for Staged {
-    fn drop(&mut self) {
-        if let Some(temporary) = &self.temporary {
-            // Nothing more can be done about a file that cannot be removed.
-            let _ = fs::remove_file(temporary);
-        }
-    }
-}
-
-/// A new hidden file in the target's folder, under a name that no other writer has.
-fn create_beside(target: &Path) -> io::Result<(File, PathBuf)> {
-    static COUNT: AtomicU32 = AtomicU32::new(0);
-    let name = target.file_name().ok_or(io::ErrorKind::InvalidInput)?;
-    loop {
-        let mut hidden = OsString::from(".");
-        hidden.push(name);
-        hidden.push(format!(".{}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
-        let temporary = target.with_file_name(hidden);
-        match OpenOptions::new().write(true).create_new(true).open(&temporary) {
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
-            opened => return opened.map(|file| (file, temporary)),
-        }
-    }
 }

@@ -7,6 +7,7 @@
 mod cloud;
 mod colour;
 mod curved;
+mod destination;
 mod error;
 mod files;
 mod font;
@@ -23,6 +24,7 @@ mod picture;
 mod planes;
 mod record;
 mod shade;
+mod staged;
 mod times;
 mod tinted;
 

@@ -2,6 +2,7 @@
 //!
 //! Outputs take these types from here, and the table of outputs takes the outputs.
 
+use super::destination::is_stream;
 use super::error::OutputError;
 use super::times::Times;
 use crate::frame::Frame;
@@ -28,14 +29,15 @@ pub struct Output {
 }
 
 impl Output {
-    /// The writer for a path's extension.
+    /// The writer for a path's extension; the usual one for `-` and for a stream without such a name, as `/dev/null`.
     ///
     /// # Errors
     /// [`OutputError::Extension`] with the extensions there are.
     pub fn writer(&self, path: &Path) -> Result<&'static Writer, OutputError> {
         let given = path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default();
         let found = self.writers.iter().find(|writer| writer.extension == given);
-        found.ok_or_else(|| OutputError::Extension {
+        let usual = || self.writers.first().filter(|_| path == Path::new("-") || is_stream(path));
+        found.or_else(usual).ok_or_else(|| OutputError::Extension {
             output: self.name,
             path: path.to_path_buf(),
             accepted: self.extensions(),

@@ -46,9 +46,14 @@ pub(super) fn beside_labels(
     files(folder, |name| name.ends_with(depth_ends))?.into_iter().map(item).collect()
 }
 
-/// A path's last part.
+/// A path's last part; bytes that are no text are written as `\xff`, so that two names stay two.
 pub(super) fn name_of(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    let name = path.file_name().unwrap_or_default().as_encoded_bytes();
+    let chunk = |chunk: std::str::Utf8Chunk<'_>| {
+        let rest: String = chunk.invalid().iter().map(|byte| format!("\\x{byte:02x}")).collect();
+        format!("{}{rest}", chunk.valid())
+    };
+    name.utf8_chunks().map(chunk).collect()
 }
 
 /// A file that has to be there beside another.

@@ -55,7 +55,7 @@ fn items(folder: &Path) -> Outcome<Vec<Item>> {
         let dataset = format!("{} {}", DATASET.name, name_of(folder));
         Item {
             dataset,
-            name: file.replace(".png", ""),
+            name: file.strip_suffix(".png").unwrap_or(&file).into(),
             frame: reading(depth, options),
             truth: None,
             is_sequence: false,

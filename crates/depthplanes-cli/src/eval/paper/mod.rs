@@ -47,7 +47,7 @@ pub(crate) fn run(wanted: &Paper, out: &mut dyn Write) -> Outcome {
     let pace = Pace { repeat: wanted.repeat, jobs: wanted.jobs };
     let all: Vec<_> =
         trials.iter().flat_map(|trial| tasks::of_entries(&trial.items, &trial.entries, pace.repeat)).collect();
-    let store = tasks::make(&all, pace, &wanted.report)?;
+    let (_claim, store) = tasks::make(&all, pace, &wanted.report)?;
     let rows: Vec<&Row> = all.iter().filter_map(|task| store.get(&task.key)).collect();
     let [middlebury, kinect, disparity, depth] = trials.each_ref().map(|trial| {
         let rows = rows.iter().copied().filter(|row| row.key.dataset == trial.name).collect();

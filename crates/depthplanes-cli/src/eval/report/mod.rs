@@ -19,6 +19,7 @@ pub(super) use page::Section;
 use super::datasets::Item;
 use super::rows::{Made, Row};
 use crate::failure::{Outcome, note};
+use crate::terminal::plain;
 use depthplanes_io::outputs::write_file;
 use page::Page;
 use std::io::Write;
@@ -39,7 +40,7 @@ pub(super) fn write(title: &str, folder: &Path, rows: &[&Row], sections: &[Secti
     if refused > 0 {
         note(&format!("{refused} of {} results are refusals; the report says why", rows.len()));
     }
-    writeln!(out, "wrote {}", written.join(", "))?;
+    writeln!(out, "wrote {}", plain(&written.join(", ")))?;
     Ok(())
 }
 
@@ -153,7 +154,7 @@ fn markdown(page: &Page<'_>) -> String {
     let mut text = format!("# {}\n\n", page.title);
     page.facts.iter().for_each(|[what, value]| text += &format!("- {what}: {value}\n"));
     for section in page.sections.iter().filter(|section| !section.tables.is_empty() || !section.text.is_empty()) {
-        text += &format!("\n## {}\n\n", section.title);
+        text += &format!("\n## {}\n\n", plain(&section.title));
         if !section.text.is_empty() {
             text += &format!("{}\n\n", section.text);
         }
@@ -165,7 +166,7 @@ fn markdown(page: &Page<'_>) -> String {
     }
     if !page.refusals.is_empty() {
         text += "\n## Refusals\n\n";
-        page.refusals.iter().for_each(|refusal| text += &format!("- {refusal}\n"));
+        page.refusals.iter().for_each(|refusal| text += &format!("- {}\n", plain(refusal)));
     }
     text
 }

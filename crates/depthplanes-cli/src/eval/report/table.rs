@@ -4,6 +4,7 @@ use super::super::rows::{Found, Row};
 use super::names::labels;
 use super::numbers::{self, by, mean, per_megapixel, share};
 use crate::table::{Align, aligned};
+use crate::terminal::plain;
 
 /// A table with a heading row.
 pub(in super::super) struct Table {
@@ -17,11 +18,13 @@ impl Table {
     pub(super) fn text(&self) -> String {
         let mut rows = vec![self.head.clone()];
         rows.extend(self.rows.iter().cloned());
-        format!("{}\n{}", self.title, aligned(&self.aligns(), &rows))
+        format!("{}\n{}", plain(&self.title), aligned(&self.aligns(), &rows))
     }
 
     pub(super) fn markdown(&self) -> String {
-        let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+        let line = |cells: &[String]| {
+            format!("| {} |\n", cells.iter().map(|cell| plain(cell)).collect::<Vec<_>>().join(" | "))
+        };
         let rule = |align: Align| if align == Align::Left { "---|" } else { "---:|" };
         let rule = format!("|{}\n", self.aligns().into_iter().map(rule).collect::<String>());
         line(&self.head) + &rule + &self.rows.iter().map(|row| line(row)).collect::<String>()

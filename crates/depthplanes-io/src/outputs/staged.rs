@@ -1,0 +1,199 @@
+//! A file's bytes on their way to their name.
+//!
+//! Bytes go to a hidden file beside the target, which then takes the target's name in one step. Whatever fails, the
+//! hidden file is removed and what stood there before stays. A run that is killed leaves its hidden file, and the next
+//! run that writes the same target removes it.
+
+use super::destination::{Destination, destination, folder_of};
+use super::error::OutputError;
+use std::collections::BTreeMap;
+use std::ffi::{OsStr, OsString};
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// A file's bytes beside their target. Dropped before [`Staged::commit`], it leaves nothing.
+pub(super) struct Staged {
+    /// The hidden file, locked while it is open; none once it has its name, and for streams.
+    hidden: Option<(File, PathBuf)>,
+    target: PathBuf,
+}
+
+impl Staged {
+    /// Writes the bytes beside their target; into it, if it is a stream.
+    pub(super) fn new(path: &Path, bytes: &[u8]) -> Result<Self, OutputError> {
+        let failed = |source| OutputError::Write { path: path.to_path_buf(), source };
+        let target = match destination(path)? {
+            Destination::File(target) => target,
+            Destination::Stream => {
+                let mut stream = OpenOptions::new().write(true).truncate(true).open(path).map_err(failed)?;
+                stream.write_all(bytes).map_err(failed)?;
+                return Ok(Staged { hidden: None, target: path.to_path_buf() });
+            }
+        };
+        let hidden = create_beside(&target).map_err(failed)?;
+        let mut staged = Staged { hidden: Some(hidden), target };
+        if let Some((file, _)) = &mut staged.hidden {
+            file.write_all(bytes).map_err(failed)?;
+        }
+        Ok(staged)
+    }
+
+    /// Waits until the bytes are on the disk.
+    pub(super) fn sync(&self) -> Result<(), OutputError> {
+        let Some((file, _)) = &self.hidden else { return Ok(()) };
+        match file.sync_all() {
+            // A file system that has no disk behind it.
+            Err(error) if matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => Ok(()),
+            synced => synced.map_err(|source| OutputError::Write { path: self.target.clone(), source }),
+        }
+    }
+
+    /// The folder that a new name comes into.
+    pub(super) fn folder(&self) -> Option<PathBuf> {
+        self.hidden.as_ref().map(|_| folder_of(&self.target).to_path_buf())
+    }
+
+    /// Gives the file its name.
+    pub(super) fn commit(mut self) -> Result<(), OutputError> {
+        if let Some((_, hidden)) = &self.hidden {
+            let failed = |source| OutputError::Write { path: self.target.clone(), source };
+            fs::rename(hidden, &self.target).map_err(failed)?;
+            self.hidden = None;
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Staged {
+    fn drop(&mut self) {
+        if let Some((_, hidden)) = &self.hidden {
+            // Nothing more can be done about a file that cannot be removed.
+            let _ = fs::remove_file(hidden);
+        }
+    }
+}
+
+/// A new hidden file in the target's folder, under a name that no other writer has.
+fn create_beside(target: &Path) -> io::Result<(File, PathBuf)> {
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let prefix = hidden_prefix(target.file_name().ok_or(io::ErrorKind::InvalidInput)?);
+    remove_stale(folder_of(target), &prefix);
+    loop {
+        let mut name = prefix.clone();
+        name.push(format!("{}-{}{SUFFIX}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
+        let hidden = target.with_file_name(name);
+        let file = match OpenOptions::new().write(true).create_new(true).open(&hidden) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
+            opened => opened?,
+        };
+        // Another run may have taken it for one that was left, before the lock: then it is gone, or about to be. File
+        // systems without locks have to do without.
+        let is_ours = !matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+        if is_ours && hidden.exists() {
+            return Ok((file, hidden));
+        }
+    }
+}
+
+/// How names of hidden files end; before it stand the process and a number of its own.
+const SUFFIX: &str = ".part";
+
+/// A name of so many bytes stands in the hidden one as it is. File systems take 255.
+const LONGEST: usize = 200;
+
+/// What the hidden names of a target begin with: its name, shortened and with a checksum if it is long.
+fn hidden_prefix(name: &OsStr) -> OsString {
+    let mut prefix = OsString::from(".");
+    if name.len() <= LONGEST {
+        prefix.push(name);
+    } else {
+        let text = name.to_string_lossy();
+        prefix.push(&text[..cut(&text, LONGEST - 40)]);
+        prefix.push(format!("~{:016x}", fnv(name.as_encoded_bytes())));
+    }
+    prefix.push(".");
+    prefix
+}
+
+/// The last place for a cut of a text that leaves `most` bytes at the most.
+fn cut(text: &str, most: usize) -> usize {
+    (0..=most.min(text.len())).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0)
+}
+
+/// FNV-1a.
+fn fnv(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// Removes hidden files of this target that killed runs have left.
+fn remove_stale(folder: &Path, prefix: &OsStr) {
+    /// Hidden files by folder, as this run found them first.
+    static LEFT: Mutex<BTreeMap<PathBuf, Vec<OsString>>> = Mutex::new(BTreeMap::new());
+    let mut left = LEFT.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let left = left.entry(folder.to_path_buf()).or_insert_with(|| hidden_files(folder));
+    left.retain(|name| {
+        let rest = name.as_encoded_bytes().strip_prefix(prefix.as_encoded_bytes());
+        match rest.and_then(owner) {
+            Some(process) => {
+                remove_if_left(&folder.join(name), process);
+                false
+            }
+            None => true,
+        }
+    });
+}
+
+fn hidden_files(folder: &Path) -> Vec<OsString> {
+    let is_hidden = |name: &OsString| {
+        let name = name.as_encoded_bytes();
+        name.starts_with(b".") && name.ends_with(SUFFIX.as_bytes())
+    };
+    let entries = folder.read_dir().into_iter().flatten().flatten();
+    entries.map(|entry| entry.file_name()).filter(is_hidden).collect()
+}
+
+/// The process by what follows the prefix: `PROCESS-NUMBER.part`.
+fn owner(rest: &[u8]) -> Option<u32> {
+    let numbers = std::str::from_utf8(rest).ok()?.strip_suffix(SUFFIX)?;
+    let (process, number) = numbers.split_once('-')?;
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    if is_number(number) && is_number(process) { process.parse().ok() } else { None }
+}
+
+/// Removes a hidden file unless somebody writes it: its process lives, or it is locked.
+fn remove_if_left(hidden: &Path, process: u32) {
+    let lives = process != std::process::id() && Path::new("/proc").join(process.to_string()).exists();
+    if lives || !fs::symlink_metadata(hidden).is_ok_and(|about| about.is_file()) {
+        return;
+    }
+    let Ok(file) = OpenOptions::new().write(true).open(hidden) else { return };
+    if file.try_lock().is_ok() {
+        let _ = fs::remove_file(hidden); // if it cannot be removed it harms nobody
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_our_own_names_are_taken_for_ours() {
+        let prefix = hidden_prefix(OsStr::new("l.png"));
+        assert_eq!(prefix, ".l.png.");
+        let owner = |name: &str| super::owner(name.as_bytes().strip_prefix(prefix.as_encoded_bytes())?);
+        assert_eq!(owner(".l.png.12-3.part"), Some(12));
+        for other in [".l.png.part", ".l.png.12.part", ".l.png.a-3.part", ".l.png.12-3.part~", ".l.png.2.12-3.part"] {
+            assert_eq!(owner(other), None, "{other}");
+        }
+    }
+
+    #[test]
+    fn hidden_names_of_long_names_differ_and_are_short_enough() {
+        let long = |last: &str| hidden_prefix(OsStr::new(&("ä".repeat(125) + last)));
+        assert!(long("a").len() + 30 <= 255);
+        assert_ne!(long("a"), long("b"));
+    }
+}
