@@ -149,7 +149,7 @@ fn program() -> clap::Command {
         .version(env!("CARGO_PKG_VERSION"))
         .about("Finds planes in depth and disparity maps.")
         .after_help(format!(
-            "First steps:\n  depthplanes demo                       a made-up scene through the whole pipeline\n  \
+            "First steps:\n  depthplanes demo                       a synthetic scene through the whole pipeline\n  \
              depthplanes inspect map.png            what is in a file, and how to read it\n  \
              depthplanes detect map.png             the planes of a map\n  \
              depthplanes score truth.png labels.png how good they are\n\n{EXIT_CODES}"
@@ -305,7 +305,7 @@ fn score_command() -> clap::Command {
 
 fn demo_command() -> clap::Command {
     let folder = flags::path("out-dir", "DIR").default_value("depthplanes-demo").help("Where the files go");
-    clap::Command::new("demo").about("Runs a made-up scene through the whole pipeline").arg(folder)
+    clap::Command::new("demo").about("Runs a synthetic scene through the whole pipeline").arg(folder)
 }
 
 fn completions_command() -> clap::Command {

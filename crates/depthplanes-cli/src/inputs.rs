@@ -13,7 +13,7 @@ pub(crate) enum Input {
     File(PathBuf),
     /// Standard input, `-`.
     Standard,
-    /// A made-up scene: what follows `scene:`.
+    /// A synthetic scene: what follows `scene:`.
     Scene(String),
 }
 

@@ -74,7 +74,7 @@ pub(crate) fn frame(input: &Input, options: &ReadOptions) -> Outcome<Frame> {
             if *options != (ReadOptions { noise, smooth_noise, ..ReadOptions::default() }) {
                 frame
                     .warnings
-                    .push("a made-up scene knows its own unit and camera: flags on reading are not used".into());
+                    .push("a synthetic scene knows its own unit and camera: flags on reading are not used".into());
             }
             Ok(frame)
         }
@@ -90,7 +90,7 @@ fn standard_input() -> Outcome<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A made-up scene as a frame; it knows its own unit and camera.
+/// A synthetic scene as a frame; it knows its own unit and camera.
 pub(crate) fn scene(spec: &str) -> Outcome<Frame> {
     let scene = spec.parse::<Spec>()?.frame()?;
     let pixels = match scene.pixels {

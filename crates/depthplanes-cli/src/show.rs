@@ -51,7 +51,7 @@ fn surfaces(curved: &Curved, detection: &Detection) -> String {
 
 fn meaning(measure: Measure) -> String {
     match measure {
-        Measure::Depth { metres } => format!("depth, a unit is {}", length(metres)),
+        Measure::Depth { metres } => format!("depth, 1 unit = {}", length(metres)),
         Measure::InverseDepth { .. } => "inverse depth".into(),
         Measure::Disparity => "disparity of an unknown rig".into(),
     }

@@ -245,7 +245,7 @@ fn a_map_can_come_from_standard_input() {
 }
 
 #[test]
-fn a_made_up_scene_is_an_input() {
+fn a_synthetic_scene_is_an_input() {
     let bench = Bench::new("scene");
     let record = json(&bench.run(&["detect", "scene:room:size=160x120,seed=3", "--json"]).ok());
     assert_eq!((&record["width"], &record["height"]), (&Value::from(160), &Value::from(120)));
