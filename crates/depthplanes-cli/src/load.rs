@@ -65,7 +65,7 @@ fn stereo(reading: &Reading, options: &ReadOptions) -> Outcome<Option<Stereo>> {
 /// What is wrong with the file or the scene.
 pub(crate) fn frame(input: &Input, options: &ReadOptions) -> Outcome<Frame> {
     match input {
-        Input::File(path) => Ok(depthplanes_io::read(path, options)?),
+        Input::File { path, .. } => Ok(depthplanes_io::read(path, options)?),
         Input::Standard => Ok(depthplanes_io::decode(&standard_input()?, "-", options)?),
         Input::Scene(spec) => {
             let mut frame = scene(spec)?;

@@ -92,6 +92,7 @@ fn every_row_of_every_table_is_listed() {
 fn every_parameter_is_listed_and_is_a_flag() {
     let bench = Bench::new("params");
     let help = bench.run(&["detect", "--help"]).ok();
+    let defaults: Vec<&str> = depthplanes::methods::default().params.iter().map(|param| param.name).collect();
     for method in depthplanes::methods::METHODS {
         let out = bench.run(&["params", method.name]).ok();
         for param in method.params {
@@ -99,7 +100,8 @@ fn every_parameter_is_listed_and_is_a_flag() {
             let line = out.lines().find(|line| line.starts_with(&format!("{flag} "))).unwrap();
             assert!(line.contains(&param.default.to_string()) && line.contains(param.meaning), "{line}");
             assert!(line.contains(param.source.unwrap_or("ours")), "{line}");
-            assert!(help.contains(&format!("{flag} <NUMBER>")), "{flag}\n{help}");
+            let shown = help.contains(&format!("{flag} <NUMBER>"));
+            assert_eq!(shown, defaults.contains(&param.name), "{flag}\n{help}");
         }
     }
 }
@@ -156,4 +158,55 @@ fn headerless_samples_are_read_with_their_size() {
     let out = bench.run(&["detect", "map.raw", "--raw-size", "32x24", "--json"]).ok();
     let record: serde_json::Value = serde_json::from_str(&out).unwrap();
     assert_eq!(record["planes"].as_array().unwrap().len(), 2);
+}
+
+/// Columns and lines of a page of help.
+const PAGE: (usize, usize) = (100, 45);
+
+#[test]
+fn the_short_help_of_every_command_is_a_page() {
+    let bench = Bench::new("short_help");
+    let whole = bench.run(&["-h"]).ok();
+    let listed = whole.lines().filter(|line| line.starts_with("  ") && line.as_bytes()[2].is_ascii_lowercase());
+    let commands: Vec<&str> =
+        listed.filter_map(|line| line.split_whitespace().next()).filter(|word| *word != "depthplanes").collect();
+    assert!(commands.len() >= 17, "{whole}");
+    for command in std::iter::once(None).chain(commands.into_iter().map(Some)) {
+        let words: Vec<&str> = command.into_iter().chain(["-h"]).collect();
+        let help = bench.run(&words).ok();
+        assert!(help.lines().count() < PAGE.1, "{words:?}: {} lines\n{help}", help.lines().count());
+        assert!(help.lines().all(|line| line.chars().count() <= PAGE.0), "{words:?}\n{help}");
+    }
+}
+
+#[test]
+fn help_tells_users_commands_from_those_of_research() {
+    let bench = Bench::new("groups");
+    let help = bench.run(&["-h"]).ok();
+    let (users, research) = help.split_once("\nResearch").unwrap();
+    for (part, commands) in [
+        (users, &["detect", "inspect", "explain", "demo", "noise", "presets", "encodings", "formats", "params"][..]),
+        (users, &["methods", "completions", "man"]),
+        (research, &["score", "compare", "eval", "datasets", "paper"]),
+    ] {
+        for command in commands {
+            assert!(part.contains(&format!("\n  {command} ")), "{command}\n{help}");
+        }
+    }
+}
+
+#[test]
+fn help_shows_the_default_methods_parameters_and_takes_those_of_all() {
+    let bench = Bench::with_map("help_parameters");
+    let help = bench.run(&["detect", "--help"]).ok();
+    assert!(!help.contains("--theta") && !help.contains("ngaf:"), "{help}");
+    let short = bench.run(&["detect", "-h"]).ok();
+    for flag in ["--preset", "--intrinsics", "--camera", "--encoding", "--scale", "--labels", "--out-dir", "--min "] {
+        assert!(short.contains(flag), "{flag}\n{short}");
+    }
+    bench.run(&["detect", "map.pgm", "--method", "ngaf", "--theta", "3"]).ok();
+    let man = bench.run(&["man", "--out-dir", "m"]).ok();
+    assert!(man.contains("pages in m"));
+    let page = String::from_utf8(bench.read("m/depthplanes-detect.1")).unwrap();
+    assert!(page.contains("theta"), "{page}");
 }

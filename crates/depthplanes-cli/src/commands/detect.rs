@@ -17,7 +17,7 @@ pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     let recipe = Recipe::new(wanted.method, &wanted.parameters, wanted.threads)?;
     let recipe = recipe.outlines(wanted.outlines)?.merge_coplanar(wanted.merge_coplanar)?;
     let recipe = recipe.curved(wanted.curved || wanted.outputs.iter().any(|(output, _)| output.needs_curved))?;
-    let inputs = inputs::expand(&wanted.inputs)?;
+    let inputs = inputs::expand(&wanted.inputs.words, wanted.inputs.recursive)?;
     check_outputs(wanted, &inputs)?;
     let mut options = load::options(&wanted.reading)?;
     options.noise = wanted.noise_table.as_ref().map(read_noise_table).transpose()?.map(SensorNoise::Table);
@@ -112,7 +112,7 @@ fn write(wanted: &Detect, input: &Input, report: &Report<'_>) -> Outcome<Vec<(&'
 }
 
 fn file_in(folder: &Path, input: &Input, output: &Output) -> PathBuf {
-    folder.join(format!("{}.{}", input.stem(), output.file))
+    folder.join(input.below()).join(format!("{}.{}", input.stem(), output.file))
 }
 
 /// Refuses outputs that have a wrong name or would overwrite something, before any work is done.
@@ -140,7 +140,7 @@ fn check_outputs(wanted: &Detect, inputs: &[Input]) -> Outcome {
 /// The files that are read: inputs, camera and noise.
 fn read_paths(wanted: &Detect, inputs: &[Input]) -> Vec<(PathBuf, String)> {
     let path = |input: &Input| match input {
-        Input::File(path) => Some((path.clone(), format!("the input {}", path.display()))),
+        Input::File { path, .. } => Some((path.clone(), format!("the input {}", path.display()))),
         _ => None,
     };
     let camera = wanted.reading.camera.iter().map(|path| (path.clone(), "the camera file".to_string()));

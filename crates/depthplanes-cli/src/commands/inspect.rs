@@ -1,12 +1,11 @@
 //! `depthplanes inspect`: what is in a file, and how it could be read.
 
-use crate::args::Reading;
+use crate::args::{Inputs, Reading};
 use crate::failure::{Failure, Outcome};
 use crate::{inputs, load};
 use depthplanes_io::inspect::{Summary, summary};
 use depthplanes_io::{Frame, ReadOptions};
 use serde_json::json;
-use std::ffi::OsString;
 use std::io::Write;
 
 /// Bars of the histogram.
@@ -14,8 +13,8 @@ const BARS: usize = 16;
 /// Longest bar, characters.
 const BAR_WIDTH: usize = 40;
 
-pub(super) fn run(words: &[OsString], reading: &Reading, as_json: bool, out: &mut dyn Write) -> Outcome {
-    let inputs = inputs::expand(words)?;
+pub(super) fn run(wanted: &Inputs, reading: &Reading, as_json: bool, out: &mut dyn Write) -> Outcome {
+    let inputs = inputs::expand(&wanted.words, wanted.recursive)?;
     let options = load::options(reading)?;
     let mut failed = 0;
     for input in &inputs {

@@ -14,7 +14,7 @@ use depthplanes::{AnyView, Detection, Sensor};
 
 pub(super) const OUTPUT: Output = Output {
     name: "overlay",
-    about: "picture: the map in grey, each plane in its colour; with --curved, curved surfaces hatched",
+    about: "picture of the map in grey and each plane in its colour; with --curved, curved surfaces hatched",
     file: "overlay.png",
     needs_camera: false,
     needs_curved: false,
