@@ -251,8 +251,8 @@ fn output_flags() -> Vec<Arg> {
             "Report curved surfaces as well: in the summary, in the JSON record and hatched on the overlay",
         ),
         outlines_flag(),
-        flags::pixels("min-hole").help(
-            "Outlines leave out holes of fewer pixels than this; 0 and 1 keep all. It matters for --outlines and --mesh",
+        flags::pixels("min-hole").requires("outlines").help(
+            "With --outlines: fill holes of fewer pixels than this, in the mesh too; by default none are filled",
         ),
         flags::switch("json", "Print the record as JSON; one line for each of several inputs"),
         flags::count("rows", "N").default_value("20").help("Planes in the printed table"),

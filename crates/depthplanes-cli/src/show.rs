@@ -39,6 +39,21 @@ pub(crate) fn summary(report: &Report<'_>) -> String {
     text
 }
 
+/// One line on what a camera would add and what to type, where it is not known and could be.
+pub(crate) fn camera_hint(report: &Report<'_>) -> String {
+    let sensor = report.frame.sensor;
+    let adds = "for distances, normals and areas in metres";
+    match sensor.measure {
+        _ if sensor.intrinsics.is_some() || report.frame.encoding == "grey" => String::new(),
+        Measure::Disparity => {
+            format!(
+                "no camera stated: {adds} add --focal and --baseline of the rig, and --intrinsics or --camera FILE\n"
+            )
+        }
+        _ => format!("no camera stated: {adds} add --preset SENSOR, --intrinsics FX,FY,CX,CY or --camera FILE\n"),
+    }
+}
+
 /// One line on the surfaces that bend.
 fn surfaces(curved: &Curved, detection: &Detection) -> String {
     let pixels: usize = curved.regions.iter().map(|region| region.pixel_count).sum();

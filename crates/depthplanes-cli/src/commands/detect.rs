@@ -7,7 +7,7 @@ use crate::inputs::{self, Input};
 use crate::run::{Recipe, Runner};
 use crate::{load, pool, show};
 use depthplanes::noise::SensorNoise;
-use depthplanes_io::outputs::{self, OUTPUTS, Output, Report};
+use depthplanes_io::outputs::{self, OUTPUTS, Output, Report, TableFile, TableForm};
 use depthplanes_io::{ReadOptions, read_noise_table};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write;
@@ -15,13 +15,17 @@ use std::path::{Path, PathBuf};
 
 pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     let recipe = Recipe::new(wanted.method, &wanted.parameters, wanted.threads)?;
-    let recipe = recipe.outlines(wanted.outlines)?.merge_coplanar(wanted.merge_coplanar)?;
-    let recipe = recipe.curved(wanted.curved || wanted.outputs.iter().any(|(output, _)| output.needs_curved))?;
+    let recipe = recipe.outlines(wanted.outlines, wanted.min_hole)?.merge_coplanar(wanted.merge_coplanar)?;
+    let needs_curved =
+        wanted.outputs.iter().map(|(output, _)| output).chain(&wanted.only).any(|output| output.needs_curved);
+    let recipe = recipe.curved(wanted.curved || needs_curved)?;
     let inputs = inputs::expand(&wanted.inputs.words, wanted.inputs.recursive)?;
     check_outputs(wanted, &inputs)?;
     let mut options = load::options(&wanted.reading)?;
     options.noise = wanted.noise_table.as_ref().map(read_noise_table).transpose()?.map(SensorNoise::Table);
-    let plan = Plan { wanted, recipe: &recipe, options, alone: inputs.len() == 1 };
+    let form = wanted.table.as_deref().map(TableForm::of).transpose()?;
+    let plan = Plan { wanted, recipe: &recipe, options, form, alone: inputs.len() == 1 };
+    let mut table = Table::begin(wanted, form)?;
     let bar = progress(inputs.len());
     let mut tally = Tally::default();
     let work = || {
@@ -34,9 +38,15 @@ pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     };
     pool::in_order(inputs.len(), wanted.jobs, work, |_, done| {
         bar.inc(1);
-        bar.suspend(|| print(done, plan.alone, &mut tally, out))
+        bar.suspend(|| {
+            table.add(&done)?;
+            print(done, plan.alone, &mut tally, out)
+        })
     })?;
     bar.finish_and_clear();
+    if let Some(line) = table.finish()?.filter(|_| !wanted.json) {
+        writeln!(out, "{line}")?;
+    }
     tally.outcome(inputs.len())
 }
 
@@ -44,6 +54,42 @@ pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
 struct Done {
     text: String,
     notes: Vec<String>,
+    /// What it adds to the table of all inputs.
+    rows: String,
+    planes: usize,
+}
+
+/// The table of all inputs, if it is wanted.
+#[derive(Default)]
+struct Table<'a> {
+    file: Option<(TableFile, &'a Path)>,
+    planes: usize,
+    inputs: usize,
+}
+
+impl<'a> Table<'a> {
+    fn begin(wanted: &'a Detect, form: Option<TableForm>) -> Outcome<Self> {
+        let (Some(form), Some(path)) = (form, &wanted.table) else { return Ok(Table::default()) };
+        Ok(Table { file: Some((form.begin(path)?, path)), ..Table::default() })
+    }
+
+    fn add(&mut self, done: &Outcome<Done>) -> Outcome {
+        if let (Some((file, _)), Ok(done)) = (&mut self.file, done) {
+            file.add(&done.rows)?;
+            self.planes += done.planes;
+            self.inputs += 1;
+        }
+        Ok(())
+    }
+
+    /// What is in it, in a line for people; nothing is written where no input was good.
+    fn finish(self) -> Outcome<Option<String>> {
+        let Some((file, path)) = self.file.filter(|_| self.inputs > 0) else { return Ok(None) };
+        file.finish()?;
+        let plural = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+        let (planes, inputs) = (plural(self.planes, "plane"), plural(self.inputs, "input"));
+        Ok(Some(format!("wrote {}: {planes} of {inputs}", path.display())))
+    }
 }
 
 /// What is done with each input.
@@ -51,6 +97,7 @@ struct Plan<'a> {
     wanted: &'a Detect,
     recipe: &'a Recipe,
     options: ReadOptions,
+    form: Option<TableForm>,
     alone: bool,
 }
 
@@ -72,11 +119,14 @@ impl Plan<'_> {
         };
         let written = write(self.wanted, input, &report)?;
         let mut notes: Vec<String> = frame.warnings.iter().map(|warning| format!("{name}: {warning}")).collect();
-        if self.wanted.json {
-            return Ok(Done { text: json(&report, self.alone), notes });
-        }
-        notes.extend(show::advice(&report));
-        Ok(Done { text: readable(self.wanted, &report, &written, self.alone), notes })
+        let text = if self.wanted.json {
+            json(&report, self.alone)
+        } else {
+            notes.extend(show::advice(&report));
+            readable(self.wanted, &report, &written, self.alone)
+        };
+        let rows = self.form.map(|form| form.rows(&report)).unwrap_or_default();
+        Ok(Done { text, notes, rows, planes: report.detection.planes.len() })
     }
 }
 
@@ -86,14 +136,17 @@ fn json(report: &Report<'_>, alone: bool) -> String {
 
 /// The table, unless the planes went to files.
 fn readable(wanted: &Detect, report: &Report<'_>, written: &[(&Output, PathBuf)], alone: bool) -> String {
-    let mut text = show::summary(report);
+    let mut text = show::summary(report) + &show::camera_hint(report);
     if written.is_empty() {
+        if wanted.table.is_some() {
+            return text;
+        }
         text += &show::table(report, wanted.rows);
         return if alone { text } else { text + "\n" };
     }
     let files: Vec<String> = written.iter().map(|(_, path)| path.display().to_string()).collect();
     text += &format!("wrote {}\n", files.join(", "));
-    if wanted.out_dir.is_some() && !report.is_metric() {
+    if wanted.out_dir.is_some() && wanted.only.is_empty() && !report.is_metric() {
         text += "no point cloud and no mesh, since camera or unit are not known\n";
     }
     text
@@ -103,9 +156,13 @@ fn readable(wanted: &Detect, report: &Report<'_>, written: &[(&Output, PathBuf)]
 fn write(wanted: &Detect, input: &Input, report: &Report<'_>) -> Outcome<Vec<(&'static Output, PathBuf)>> {
     let mut files = wanted.outputs.clone();
     if let Some(folder) = &wanted.out_dir {
-        make_folder(folder)?;
-        let possible = OUTPUTS.iter().filter(|output| report.has_what_it_takes(output));
-        files.extend(possible.map(|output| (output, file_in(folder, input, output))));
+        make_folder(&folder.join(input.below()))?;
+        let file = |output: &'static Output| (output, file_in(folder, input, output));
+        if wanted.only.is_empty() {
+            files.extend(OUTPUTS.iter().filter(|output| report.has_what_it_takes(output)).map(file));
+        } else {
+            files.extend(wanted.only.iter().copied().map(file));
+        }
     }
     outputs::write_all(report, &files)?;
     Ok(files)
@@ -118,7 +175,9 @@ fn file_in(folder: &Path, input: &Input, output: &Output) -> PathBuf {
 /// Refuses outputs that have a wrong name or would overwrite something, before any work is done.
 fn check_outputs(wanted: &Detect, inputs: &[Input]) -> Outcome {
     if let (Some((output, _)), true) = (wanted.outputs.first(), inputs.len() > 1) {
-        let message = format!("--{} names one file, but there are {} inputs; use --out-dir", output.name, inputs.len());
+        let (name, count) = (output.name, inputs.len());
+        let table = if name == "planes" { ", or --table for one file" } else { "" };
+        let message = format!("--{name} names one file, but there are {count} inputs; use --out-dir{table}");
         return Err(Failure::request(message));
     }
     for (output, path) in &wanted.outputs {
@@ -127,11 +186,19 @@ fn check_outputs(wanted: &Detect, inputs: &[Input]) -> Outcome {
     }
     let named = wanted.outputs.iter().map(|(output, path)| (path.clone(), format!("--{}", output.name)));
     let mut written: Vec<(PathBuf, String)> = named.collect();
+    if let Some(path) = &wanted.table {
+        TableForm::of(path)?;
+        outputs::check_folder(path)?;
+        written.push((path.clone(), "--table".into()));
+    }
     if let Some(folder) = &wanted.out_dir {
         refuse_file(folder)?;
         for input in inputs {
             let name = |output: &Output| format!("the {} of {}", output.name, input.name());
-            written.extend(OUTPUTS.iter().map(|output| (file_in(folder, input, output), name(output))));
+            let all = OUTPUTS
+                .iter()
+                .filter(|output| wanted.only.is_empty() || wanted.only.iter().any(|o| o.name == output.name));
+            written.extend(all.map(|output| (file_in(folder, input, output), name(output))));
         }
     }
     Ok(outputs::check_paths(&read_paths(wanted, inputs), &written)?)

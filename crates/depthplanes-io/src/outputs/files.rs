@@ -8,7 +8,7 @@ use super::output::{Output, Report};
 use std::collections::HashMap;
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -84,6 +84,35 @@ fn is_device(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir())
 }
 
+/// A file that grows beside its target and takes its name at the end. Dropped before [`Growing::commit`], it leaves
+/// nothing.
+pub(super) struct Growing {
+    staged: Staged,
+    file: BufWriter<File>,
+}
+
+impl Growing {
+    pub(super) fn new(path: &Path) -> Result<Self, OutputError> {
+        let failed = |source| OutputError::Write { path: path.to_path_buf(), source };
+        if is_device(path) {
+            let file = OpenOptions::new().write(true).open(path).map_err(failed)?;
+            let staged = Staged { temporary: None, target: path.to_path_buf() };
+            return Ok(Growing { staged, file: BufWriter::new(file) });
+        }
+        let (staged, file) = Staged::begin(path)?;
+        Ok(Growing { staged, file: BufWriter::new(file) })
+    }
+
+    pub(super) fn write(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
+        self.file.write_all(bytes).map_err(|source| OutputError::Write { path: self.staged.target.clone(), source })
+    }
+
+    pub(super) fn commit(mut self) -> Result<(), OutputError> {
+        self.file.flush().map_err(|source| OutputError::Write { path: self.staged.target.clone(), source })?;
+        self.staged.commit()
+    }
+}
+
 /// A file's bytes, on the disk beside their target. Dropped before [`Staged::commit`], it leaves
 /// nothing.
 struct Staged {
@@ -98,12 +127,18 @@ impl Staged {
             fs::write(path, bytes).map_err(failed)?;
             return Ok(Staged { temporary: None, target: path.to_path_buf() });
         }
-        // A link keeps pointing where it points: its target is what gets replaced.
-        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
-        let (mut file, temporary) = create_beside(&target).map_err(failed)?;
-        let staged = Staged { temporary: Some(temporary), target };
+        let (staged, mut file) = Staged::begin(path)?;
         file.write_all(bytes).and_then(|()| file.flush()).map_err(failed)?;
         Ok(staged)
+    }
+
+    /// The empty file beside its target.
+    fn begin(path: &Path) -> Result<(Self, File), OutputError> {
+        // A link keeps pointing where it points: its target is what gets replaced.
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        let created = create_beside(&target);
+        let (file, temporary) = created.map_err(|source| OutputError::Write { path: path.to_path_buf(), source })?;
+        Ok((Staged { temporary: Some(temporary), target }, file))
     }
 
     fn commit(mut self) -> Result<(), OutputError> {
