@@ -39,18 +39,18 @@ pub(crate) fn summary(report: &Report<'_>) -> String {
     text
 }
 
-/// One line on what a camera would add and what to type, where it is not known and could be.
-pub(crate) fn camera_hint(report: &Report<'_>) -> String {
+/// One line on what a camera would add and what to type, where it is not known and could be. `preset`: whether one was
+/// given, which then has no camera.
+pub(crate) fn camera_hint(report: &Report<'_>, preset: bool) -> String {
     let sensor = report.frame.sensor;
-    let adds = "for distances, normals and areas in metres";
+    let adds = "adds distance, normal and area in metres";
     match sensor.measure {
         _ if sensor.intrinsics.is_some() || report.frame.encoding == "grey" => String::new(),
         Measure::Disparity => {
-            format!(
-                "no camera stated: {adds} add --focal and --baseline of the rig, and --intrinsics or --camera FILE\n"
-            )
+            format!("no camera: --baseline METRES with --intrinsics FX,FY,CX,CY or --camera FILE {adds}\n")
         }
-        _ => format!("no camera stated: {adds} add --preset SENSOR, --intrinsics FX,FY,CX,CY or --camera FILE\n"),
+        _ if preset => format!("no camera: --intrinsics FX,FY,CX,CY or --camera FILE {adds}\n"),
+        _ => format!("no camera: --preset SENSOR, --intrinsics FX,FY,CX,CY or --camera FILE {adds}\n"),
     }
 }
 

@@ -27,7 +27,7 @@ pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     let plan = Plan { wanted, recipe: &recipe, options, form, alone: inputs.len() == 1 };
     let mut table = Table::begin(wanted, form)?;
     let bar = progress(inputs.len());
-    let mut tally = Tally::default();
+    let (mut tally, mut hint) = (Tally::default(), String::new());
     let work = || {
         let mut runner = Runner::new(&recipe);
         let (plan, inputs) = (&plan, &inputs);
@@ -40,6 +40,11 @@ pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
         bar.inc(1);
         bar.suspend(|| {
             table.add(&done)?;
+            if let Ok(Done { hint: said, .. }) = &done
+                && hint.is_empty()
+            {
+                hint.clone_from(said);
+            }
             print(done, plan.alone, &mut tally, out)
         })
     })?;
@@ -47,6 +52,7 @@ pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     if let Some(line) = table.finish()?.filter(|_| !wanted.json) {
         writeln!(out, "{line}")?;
     }
+    out.write_all(hint.as_bytes())?;
     tally.outcome(inputs.len())
 }
 
@@ -57,6 +63,8 @@ struct Done {
     /// What it adds to the table of all inputs.
     rows: String,
     planes: usize,
+    /// What a camera would add; said once for many inputs.
+    hint: String,
 }
 
 /// The table of all inputs, if it is wanted.
@@ -126,7 +134,8 @@ impl Plan<'_> {
             readable(self.wanted, &report, &written, self.alone)
         };
         let rows = self.form.map(|form| form.rows(&report)).unwrap_or_default();
-        Ok(Done { text, notes, rows, planes: report.detection.planes.len() })
+        let hint = if self.alone || self.wanted.json { String::new() } else { camera_hint(self.wanted, &report) };
+        Ok(Done { text, notes, rows, planes: report.detection.planes.len(), hint })
     }
 }
 
@@ -136,7 +145,10 @@ fn json(report: &Report<'_>, alone: bool) -> String {
 
 /// The table, unless the planes went to files.
 fn readable(wanted: &Detect, report: &Report<'_>, written: &[(&Output, PathBuf)], alone: bool) -> String {
-    let mut text = show::summary(report) + &show::camera_hint(report);
+    let mut text = show::summary(report);
+    if alone {
+        text += &camera_hint(wanted, report);
+    }
     if written.is_empty() {
         if wanted.table.is_some() {
             return text;
@@ -150,6 +162,10 @@ fn readable(wanted: &Detect, report: &Report<'_>, written: &[(&Output, PathBuf)]
         text += "no point cloud and no mesh, since camera or unit are not known\n";
     }
     text
+}
+
+fn camera_hint(wanted: &Detect, report: &Report<'_>) -> String {
+    show::camera_hint(report, wanted.reading.preset.is_some())
 }
 
 /// Writes the outputs that are wanted of an input; says which.
