@@ -154,7 +154,7 @@ fn readable(wanted: &Detect, report: &Report<'_>, written: &[(&Output, PathBuf)]
             return text;
         }
         text += &show::table(report, wanted.rows);
-        return if alone { text } else { text + "\n" };
+        return text + if alone { show::table_key(report) } else { "\n" };
     }
     let files: Vec<String> = written.iter().map(|(_, path)| path.display().to_string()).collect();
     text += &format!("wrote {}\n", files.join(", "));

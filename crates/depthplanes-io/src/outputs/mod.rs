@@ -7,6 +7,7 @@
 mod cloud;
 mod colour;
 mod curved;
+mod depth;
 mod error;
 mod files;
 mod font;
@@ -27,6 +28,7 @@ mod times;
 mod tinted;
 
 pub use colour::colour;
+pub use depth::depth_m;
 pub use error::OutputError;
 pub use files::{check_folder, check_paths, write_all, write_file};
 pub use labels::{npy as labels_npy, png as labels_png};

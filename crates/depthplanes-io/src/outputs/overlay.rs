@@ -58,7 +58,7 @@ fn picture(report: &Report<'_>) -> Result<Picture, OutputError> {
     let mut picture = tinted(frame.view()?, &frame.sensor, detection, *outlines);
     if report.legend {
         legend::number_planes(&mut picture, detection);
-        picture = legend::beside(&picture, detection);
+        picture = legend::beside(&picture, detection, frame.sensor.measure);
     }
     Ok(picture)
 }
