@@ -1,5 +1,6 @@
 //! `depthplanes inspect`: what is in a file, and how it could be read.
 
+use super::next;
 use crate::args::{Inputs, Reading};
 use crate::failure::{Failure, Outcome};
 use crate::{inputs, load};
@@ -20,7 +21,7 @@ pub(super) fn run(wanted: &Inputs, reading: &Reading, as_json: bool, out: &mut d
     for input in &inputs {
         match look(input, &options).map_err(|failure| failure.of_input(&input.name())) {
             Ok((_, seen)) if as_json => writeln!(out, "{}", record(&input.name(), &seen))?,
-            Ok((frame, seen)) => out.write_all(readable(&input.name(), &frame, &seen).as_bytes())?,
+            Ok((frame, seen)) => out.write_all(readable(&input.name(), &frame, &seen, reading).as_bytes())?,
             Err(failure) if inputs.len() == 1 => return Err(failure),
             Err(failure) => {
                 out.flush()?;
@@ -62,7 +63,7 @@ fn record(name: &str, seen: &Summary) -> serde_json::Value {
     })
 }
 
-fn readable(name: &str, frame: &Frame, seen: &Summary) -> String {
+fn readable(name: &str, frame: &Frame, seen: &Summary, reading: &Reading) -> String {
     let mut text = format!("{name}\n");
     let mut line = |what: &str, value: String| text += &format!("  {what:<10} {value}\n");
     line("map", format!("{} x {}, {}, format {}", seen.width, seen.height, seen.pixel_type, seen.format));
@@ -83,6 +84,9 @@ fn readable(name: &str, frame: &Frame, seen: &Summary) -> String {
     text += &histogram(seen);
     for warning in &seen.warnings {
         text += &format!("  note: {warning}\n");
+    }
+    for (i, line) in next::lines(name, frame, seen, reading).iter().enumerate() {
+        text += &format!("  {:<10} {line}\n", if i == 0 { "type next" } else { "" });
     }
     text + "\n"
 }
