@@ -210,3 +210,50 @@ fn help_shows_the_default_methods_parameters_and_takes_those_of_all() {
     let page = String::from_utf8(bench.read("m/depthplanes-detect.1")).unwrap();
     assert!(page.contains("theta"), "{page}");
 }
+
+/// The command that `inspect` ends with, and all it prints.
+fn typed_next(bench: &Bench, words: &[&str]) -> (Vec<String>, String) {
+    let out = bench.run(&[&["inspect"], words].concat()).ok();
+    let line = out.lines().find_map(|line| line.trim_start().strip_prefix("type next  depthplanes "));
+    let words = line.unwrap_or_else(|| panic!("{out}")).split(' ').map(|word| word.trim_matches('\'').to_string());
+    (words.collect(), out.clone())
+}
+
+#[test]
+fn what_inspect_says_to_type_next_works() {
+    let bench = Bench::with_map("type_next");
+    let fives: Vec<u8> = (0..64 * 48u32).flat_map(|at| (5000 + 5 * (at % 64) as u16).to_be_bytes()).collect();
+    bench.write("fives.pgm", &[b"P5 64 48 65535\n".to_vec(), fives].concat());
+    let size: Vec<u8> = (0..640 * 480u32).flat_map(|at| (1500 + (at % 640 + at / 640) as u16).to_be_bytes()).collect();
+    bench.write("vga.pgm", &[b"P5 640 480 65535\n".to_vec(), size].concat());
+    bench
+        .write("grey.pgm", &[b"P5 64 48 255\n".to_vec(), (0..64 * 48u32).map(|at| (at % 64) as u8).collect()].concat());
+    for (words, wanted, more) in [
+        (&["map.pgm"][..], "detect map.pgm --encoding millimetre", "--intrinsics FX,FY,CX,CY or --camera FILE"),
+        (&["fives.pgm"], "detect fives.pgm --encoding tum", "--camera FILE"),
+        (&["vga.pgm"], "detect vga.pgm --encoding millimetre", "--preset kinect1 "),
+        (&["vga.pgm", "--preset", "kinect1"], "detect vga.pgm --preset kinect1", ""),
+        (&["vga.pgm", "--scale", "500"], "detect vga.pgm --scale 500", "--camera FILE"),
+        (&["map.pgm", "--disparity"], "detect map.pgm --disparity", "--baseline METRES"),
+        (&["grey.pgm", "--encoding", "grey"], "detect grey.pgm --encoding grey", ""),
+        (&["scene:room:size=64x48"], "detect scene:room:size=64x48", ""),
+    ] {
+        let (next, out) = typed_next(&bench, words);
+        assert_eq!(next.join(" "), wanted, "{out}");
+        assert!(out.contains(more), "{out}");
+        bench.run(&next.iter().map(String::as_str).collect::<Vec<_>>()).ok();
+    }
+}
+
+#[test]
+fn what_inspect_says_to_type_next_works_for_recorded_maps() {
+    let Some(data) = support::data() else { return };
+    let bench = Bench::new("type_next_recorded");
+    for file in
+        ["gt_real/pcl.depth.png", "gt_real/tum_fr3.depth.png", "pcl_kinect/office1.pcd", "pfm/terrace/disp0.pfm"]
+    {
+        let path = data.join(file);
+        let (next, _) = typed_next(&bench, &[path.to_str().unwrap()]);
+        bench.run(&next.iter().map(String::as_str).collect::<Vec<_>>()).ok();
+    }
+}
