@@ -86,6 +86,7 @@ fn is_device(path: &Path) -> bool {
 
 /// A file that grows beside its target and takes its name at the end. Dropped before [`Growing::commit`], it leaves
 /// nothing.
+#[derive(Debug)]
 pub(super) struct Growing {
     staged: Staged,
     file: BufWriter<File>,
@@ -115,6 +116,7 @@ impl Growing {
 
 /// A file's bytes, on the disk beside their target. Dropped before [`Staged::commit`], it leaves
 /// nothing.
+#[derive(Debug)]
 struct Staged {
     temporary: Option<PathBuf>,
     target: PathBuf,

@@ -10,6 +10,7 @@ use super::planes;
 use std::path::Path;
 
 /// A form of the table.
+#[derive(Debug)]
 struct Form {
     extension: &'static str,
     head: fn() -> String,
@@ -23,7 +24,7 @@ const FORMS: &[Form] = &[
 ];
 
 /// The form of a table, by the name of its file.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct TableForm(&'static Form);
 
 impl TableForm {
@@ -59,6 +60,7 @@ impl TableForm {
 }
 
 /// A table that is being written. Dropped before [`TableFile::finish`], it leaves nothing.
+#[derive(Debug)]
 pub struct TableFile(Growing);
 
 impl TableFile {
