@@ -127,7 +127,7 @@ fn squares_in_squares(found: &mut Detection, pixels: usize) {
         let (u, v) = (at % width, at / width);
         let from_edge = u.min(v).min(width - 1 - u).min(height - 1 - v);
         if *label != 2 {
-            *label = u16::from(from_edge / pixels % 2 == 0 && !found.planes.is_empty());
+            *label = u16::from((from_edge / pixels).is_multiple_of(2) && !found.planes.is_empty());
         }
     }
 }
