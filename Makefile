@@ -43,7 +43,7 @@ say = @printf '\n== %s\n' '$(1)'
 help: ## List the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
 
-demo: ## Build the program and run a made-up scene through it into out/demo
+demo: ## Build the program and run a synthetic scene through it into out/demo
 	$(CARGO) build --release --package depthplanes-cli
 	"$${CARGO_TARGET_DIR:-target}"/release/depthplanes demo --out-dir out/demo
 
@@ -109,7 +109,7 @@ bench: $(VENV) ## Measure against cc3d and OpenCV; writes benchmarks/record/MACH
 	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes --examples
 	$(PY) benchmarks/run.py --rounds $(ROUNDS) --record "benchmarks/record/$(MACHINE)/$$(date +%F).csv"
 
-bench-planar: ## Time planar on recorded and made-up frames, beside OTHER's program if stated; writes benchmarks/record/MACHINE/planar-DATE.csv
+bench-planar: ## Time planar on recorded and synthetic frames, beside OTHER's program if stated; writes benchmarks/record/MACHINE/planar-DATE.csv
 	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes-io --examples
 	mkdir -p "benchmarks/record/$(MACHINE)"
 	target/release/examples/bench_planar $(ROUNDS) '$(DATA)' $(OTHER) > "benchmarks/record/$(MACHINE)/planar.partial"

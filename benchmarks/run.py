@@ -33,7 +33,7 @@ FIELDS = ["frame", "width", "height", "type", "theta", "min", "runs", "planes", 
           "times_filter_speckles", "copies_of_the_frame", "ours_ns_per_pixel"]
 
 
-def made_up(spec, kind):
+def synthetic(spec, kind):
     """A frame of the scene generator."""
     with tempfile.NamedTemporaryFile(suffix=".raw") as file:
         size = subprocess.run([EXAMPLES / "bench_frame", spec, file.name], check=True, capture_output=True, text=True)
@@ -48,15 +48,15 @@ def real(data, path):
 def frames(data):
     """(name, map, theta, min): quantised and raw noisy ones, small and large."""
     large = "size=4096x3000"
-    yield "made-up room, disparity 8 bit", made_up("room:sensor=disparity", np.uint8), 1, 64
-    room = made_up("room:sensor=kinect_white", np.uint16)
-    yield "made-up room, Kinect >> 5", (room >> 5).astype(np.uint8), 1, 64
-    yield "made-up room, Kinect mm", room, 2, 64
-    yield "made-up room, ToF mm", made_up("room:sensor=tof_white", np.uint16), 2, 64
-    yield "made-up room, disparity 8 bit, large", made_up(f"room:sensor=disparity,{large}", np.uint8), 1, 64
-    room = made_up(f"room:sensor=kinect_white,{large}", np.uint16)
-    yield "made-up room, Kinect >> 5, large", (room >> 5).astype(np.uint8), 1, 64
-    yield "made-up room, Kinect mm, large", room, 2, 64
+    yield "synthetic room, disparity 8 bit", synthetic("room:sensor=disparity", np.uint8), 1, 64
+    room = synthetic("room:sensor=kinect_white", np.uint16)
+    yield "synthetic room, Kinect >> 5", (room >> 5).astype(np.uint8), 1, 64
+    yield "synthetic room, Kinect mm", room, 2, 64
+    yield "synthetic room, ToF mm", synthetic("room:sensor=tof_white", np.uint16), 2, 64
+    yield "synthetic room, disparity 8 bit, large", synthetic(f"room:sensor=disparity,{large}", np.uint8), 1, 64
+    room = synthetic(f"room:sensor=kinect_white,{large}", np.uint16)
+    yield "synthetic room, Kinect >> 5, large", (room >> 5).astype(np.uint8), 1, 64
+    yield "synthetic room, Kinect mm, large", room, 2, 64
     kinect = real(data, "kinect_v1/cape_depth_0.png")
     if kinect is not None:
         yield "Kinect v1 >> 5 as 8 bit", (kinect >> 5).astype(np.uint8), 1, 64
@@ -189,7 +189,7 @@ def main():
     options = parser.parse_args()
     data = options.data if options.data.is_dir() else None
     if data is None:
-        print(f"no real maps at {options.data}; made-up frames only")
+        print(f"no real maps at {options.data}; synthetic frames only")
     cv2.setNumThreads(1)
     print(f"{processor()}, {options.threads} thread(s), medians of {options.rounds} interleaved rounds, microseconds")
     header = f"{'frame':38} {'size':>9} {'theta':>5} {'runs':>8} {'ours':>8} {'copy':>7} {'cc3d+f':>9} {'speckles':>9} " \

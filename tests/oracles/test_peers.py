@@ -1,5 +1,5 @@
 """benchmarks/peers.py as `depthplanes eval` runs it: cc3d's planes are those of `ngaf`, and every peer that is there
-finds the walls of a made-up corner."""
+finds the walls of a synthetic corner."""
 
 import importlib.util
 import json

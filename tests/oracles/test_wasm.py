@@ -77,7 +77,7 @@ def recorded(data, name):
 
 @pytest.fixture(params=[*REAL, room, steps], ids=lambda param: getattr(param, "__name__", param))
 def depth(request):
-    """One of ten maps; the made-up ones are there without data."""
+    """One of ten maps; the synthetic ones are there without data."""
     return request.param() if callable(request.param) else recorded(request.getfixturevalue("data"), request.param)
 
 

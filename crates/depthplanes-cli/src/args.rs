@@ -6,6 +6,7 @@
 
 mod exit_codes;
 mod flags;
+mod help;
 mod several;
 
 use crate::failure::{Failure, exit_code};
@@ -23,15 +24,15 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 pub(crate) use clap_complete::Shell;
-pub(crate) use flags::Reading;
+pub(crate) use flags::{Inputs, Reading};
 pub(crate) use several::{Compare, Eval, Paper};
 
 /// What the user wants.
 pub(crate) enum Command {
     Detect(Box<Detect>),
     Explain(Box<Explain>),
-    Inspect { inputs: Vec<OsString>, reading: Box<Reading>, json: bool },
-    Noise { inputs: Vec<OsString>, reading: Box<Reading>, json: bool },
+    Inspect { inputs: Inputs, reading: Box<Reading>, json: bool },
+    Noise { inputs: Inputs, reading: Box<Reading>, json: bool },
     Score(Score),
     Eval(Eval),
     Paper(Paper),
@@ -49,7 +50,7 @@ pub(crate) enum Command {
 
 /// `depthplanes detect`.
 pub(crate) struct Detect {
-    pub(crate) inputs: Vec<OsString>,
+    pub(crate) inputs: Inputs,
     pub(crate) reading: Reading,
     pub(crate) method: &'static MethodInfo,
     /// Parameters given, by flag; also those that the method does not have.
@@ -57,11 +58,17 @@ pub(crate) struct Detect {
     pub(crate) noise_table: Option<PathBuf>,
     pub(crate) outputs: Vec<(&'static Output, PathBuf)>,
     pub(crate) out_dir: Option<PathBuf>,
+    /// The outputs that go into the folder; all that are possible if none is named.
+    pub(crate) only: Vec<&'static Output>,
+    /// One file for the planes of all inputs.
+    pub(crate) table: Option<PathBuf>,
     pub(crate) legend: bool,
     /// Angle in degrees and distance in metres within which coplanar planes are joined, if that is wanted.
     pub(crate) merge_coplanar: Option<[f64; 2]>,
     /// Tolerance of the planes' outlines, pixels, if they are wanted.
     pub(crate) outlines: Option<f64>,
+    /// Pixels of the smallest hole that outlines keep.
+    pub(crate) min_hole: usize,
     /// Whether surfaces that bend are wanted as well.
     pub(crate) curved: bool,
     pub(crate) json: bool,
@@ -120,12 +127,12 @@ fn command(matches: &ArgMatches) -> Command {
         "detect" => Command::Detect(Box::new(detect(matches))),
         "explain" => Command::Explain(Box::new(explain(matches))),
         "inspect" => Command::Inspect {
-            inputs: inputs(matches),
+            inputs: Inputs::from_matches(matches),
             reading: Box::new(Reading::from_matches(matches)),
             json: matches.get_flag("json"),
         },
         "noise" => Command::Noise {
-            inputs: inputs(matches),
+            inputs: Inputs::from_matches(matches),
             reading: Box::new(Reading::from_matches(matches)),
             json: matches.get_flag("json"),
         },
@@ -169,113 +176,144 @@ pub(crate) fn man_pages() -> std::io::Result<Vec<(String, Vec<u8>)>> {
 }
 
 fn program() -> clap::Command {
+    let commands = [
+        detect_command(),
+        explain_command(),
+        inspect_command(),
+        noise_command(),
+        score_command(),
+        several::compare_command(),
+        several::eval_command(),
+        several::paper_command(),
+        clap::Command::new("datasets").about("Lists the sets of maps that `eval` knows, and how their folders look"),
+        demo_command(),
+        clap::Command::new("methods").about("Lists the methods"),
+        clap::Command::new("params")
+            .about("Lists the parameters of the methods: default, unit, range, meaning")
+            .arg(method_arg("method").help("Only this method's")),
+        clap::Command::new("formats").about("Lists the file formats that can be read"),
+        clap::Command::new("encodings").about("Lists what a file's numbers can mean"),
+        clap::Command::new("presets").about("Lists the sensors whose encoding and camera are known"),
+        completions_command(),
+        clap::Command::new("man")
+            .about("Prints the manual page, or writes all of them to a folder")
+            .arg(flags::path("out-dir", "DIR").help("Write one page for each command into this folder")),
+    ]
+    .map(help::with_short_page);
     clap::Command::new("depthplanes")
         .version(env!("CARGO_PKG_VERSION"))
         .about("Finds planes in depth and disparity maps.")
-        .after_help(format!(
-            "First steps:\n  depthplanes demo                       a made-up scene through the whole pipeline\n  \
-             depthplanes inspect map.png            what is in a file, and how to read it\n  \
-             depthplanes detect map.png             the planes of a map\n  \
-             depthplanes score truth.png labels.png how good they are\n\n{EXIT_CODES}"
-        ))
+        .help_template(help::template(&commands))
+        .after_help(FIRST_STEPS)
+        .after_long_help(format!("{FIRST_STEPS}\n\n{EXIT_CODES}"))
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([
-            detect_command(),
-            explain_command(),
-            inspect_command(),
-            noise_command(),
-            score_command(),
-            several::compare_command(),
-            several::eval_command(),
-            several::paper_command(),
-            clap::Command::new("datasets")
-                .about("Lists the sets of maps that `eval` knows, and how their folders have to look"),
-            demo_command(),
-            clap::Command::new("methods").about("Lists the methods"),
-            clap::Command::new("params")
-                .about("Lists the parameters of the methods: default, unit, range, meaning")
-                .arg(method_arg("method").help("Only this method's")),
-            clap::Command::new("formats").about("Lists the file formats that can be read"),
-            clap::Command::new("encodings").about("Lists what a file's numbers can mean"),
-            clap::Command::new("presets").about("Lists the sensors whose encoding and camera are known"),
-            completions_command(),
-            clap::Command::new("man")
-                .about("Prints the manual page, or writes all of them to a folder")
-                .arg(flags::path("out-dir", "DIR").help("Write one page for each command into this folder")),
-        ])
+        .subcommands(commands)
 }
+
+const FIRST_STEPS: &str = "First steps:
+  depthplanes demo             a synthetic scene through the whole pipeline
+  depthplanes inspect map.png  what is in a file, and the command to type next
+  depthplanes detect map.png   the planes of a map
+  depthplanes detect -h        the flags that most people need; `--help` shows all";
 
 fn detect_command() -> clap::Command {
     clap::Command::new("detect")
-        .about("Finds the planes of depth or disparity maps; without an output flag it prints a table")
-        .after_help(EXIT_CODES)
-        .arg(flags::inputs())
-        .args(flags::reading())
-        .arg(method_arg("method").long("method").default_value(methods::default().name).help("How to look for planes"))
-        .args(flags::method_parameters())
-        .arg(flags::noise_table())
-        .arg(merge_coplanar_flag())
+        .about("Finds the planes of depth and disparity maps: as a table, or as files")
+        .args(flags::inputs())
         .args(output_flags())
+        .args(flags::reading())
+        .args(one_method())
+        .arg(merge_coplanar_flag())
         .args(running_flags())
 }
 
 fn explain_command() -> clap::Command {
     let input = Arg::new("input").value_name("INPUT").required(true).value_parser(value_parser!(OsString));
     clap::Command::new("explain")
-        .about("Says why a pixel belongs to a plane or to none: what each stage saw there, and what to change")
-        .after_help(EXIT_CODES)
+        .about("Says why a pixel belongs to a plane or to none, and what to change")
         .arg(input.help("A file, - for standard input, or scene:SPEC for a synthetic scene"))
         .arg(flags::pixel("at").required(true).help("The pixel: column and row, from 0"))
         .args(flags::reading())
-        .arg(method_arg("method").long("method").default_value(methods::default().name).help("How to look for planes"))
-        .args(flags::method_parameters())
-        .arg(flags::noise_table())
+        .args(one_method())
         .arg(flags::switch("json", "Print one JSON document"))
+}
+
+/// The method, its parameters and the file that states its noise.
+fn one_method() -> Vec<Arg> {
+    let method = method_arg("method").long("method").default_value(methods::default().name).hide_possible_values(true);
+    let mut all = vec![method.help("How to look for planes (`depthplanes methods`)")];
+    all.extend(flags::method_parameters(&[methods::default()]));
+    all.push(flags::noise_table());
+    all.into_iter().map(|arg| arg.help_heading(flags::METHOD)).collect()
 }
 
 fn output_flags() -> Vec<Arg> {
     let flag = |output: &'static Output| {
-        let help = format!("Write the {} ({})", output.about, output.extensions());
-        flags::path(output.name, "FILE").help(help).help_heading("Output")
+        let written = |about| format!("Write the {about} ({})", output.extensions());
+        let short = output.about.split([':', ';', ',']).next().unwrap_or_default();
+        flags::path(output.name, "FILE").help(written(short)).long_help(written(output.about))
     };
     let mut all: Vec<Arg> = OUTPUTS.iter().map(flag).collect();
     let names: Vec<String> = OUTPUTS.iter().map(|output| output.file.to_string()).collect();
-    let out_dir = format!("Write all outputs of each input into this folder, as INPUT.{}", names.join(", INPUT."));
+    let only = Arg::new("only").long("only").value_name("A,B,..").value_delimiter(',').requires("out-dir");
+    let only = only.value_parser(PossibleValuesParser::new(OUTPUTS.iter().map(|output| output.name)));
     all.extend([
-        flags::path("out-dir", "DIR").help(out_dir).help_heading("Output"),
-        flags::switch("legend", "Put a legend beside the overlay and numbers on its planes").help_heading("Output"),
+        flags::path("out-dir", "DIR")
+            .help("Write all outputs of each input into this folder")
+            .long_help(format!("Write all outputs of each input into this folder, as INPUT.{}", names.join(", INPUT."))),
+        only.hide_possible_values(true).help("With --out-dir: write only these, such as `overlay,planes`").long_help(
+            format!("With --out-dir: write only these; names are {}", output_names()),
+        ),
+        flags::path("table", "FILE").help("Write the planes of all inputs into one file (.csv or .jsonl)").long_help(
+            "Write the planes of all inputs into one file: .csv has a row for each plane, .jsonl a line for each input. \
+             Inputs that fail are left out and named",
+        ),
+        flags::switch("legend", "Put a legend beside the overlay and numbers on its planes"),
         flags::switch(
             "curved",
             "Report curved surfaces as well: in the summary, in the JSON record and hatched on the overlay",
-        )
-        .help_heading("Output"),
-        outlines_flag().help_heading("Output"),
-        flags::switch("json", "Print the record as JSON; one line for each of several inputs").help_heading("Output"),
-        flags::count("rows", "N").default_value("20").help("Planes in the printed table").help_heading("Output"),
+        ),
+        outlines_flag(),
+        flags::pixels("min-hole").requires("outlines").help(
+            "With --outlines: fill holes of fewer pixels than this, in the mesh too; by default none are filled",
+        ),
+        flags::switch("json", "Print the record as JSON; one line for each of several inputs"),
+        flags::count("rows", "N").default_value("20").help("Planes in the printed table"),
     ]);
-    all
+    all.into_iter().map(|arg| arg.help_heading("Output")).collect()
+}
+
+fn output_names() -> String {
+    OUTPUTS.iter().map(|output| output.name).collect::<Vec<_>>().join(", ")
 }
 
 fn merge_coplanar_flag() -> Arg {
     let Coplanar { angle_deg, distance_m, .. } = Coplanar::default();
     let both = format!("{angle_deg},{distance_m}");
-    let help = format!(
-        "Join separate pieces of one plane whose normals differ by at most ANGLE_DEG degrees and whose middles lie \
-         within DISTANCE_M metres of each other's plane [default {both}]; needs unit and camera"
+    let long = format!(
+        "Join separate pieces of one plane whose normals differ by at most DEG degrees and whose middles lie \
+         within M metres of each other's plane [default {both}]; needs unit and camera"
     );
-    let flag = flags::numbers::<2>("merge-coplanar", "ANGLE_DEG,DISTANCE_M").long("merge-coplanar");
-    flag.num_args(0..=1).require_equals(true).default_missing_value(both).help(help)
+    let flag = flags::numbers::<2>("merge-coplanar", "DEG,M").long("merge-coplanar");
+    flag.num_args(0..=1)
+        .require_equals(true)
+        .default_missing_value(both)
+        .help("Join separate pieces of one plane; needs unit and camera")
+        .long_help(long)
+        .help_heading(flags::METHOD)
 }
 
 fn outlines_flag() -> Arg {
-    let help = format!(
+    let long = format!(
         "Put the planes' outlines into the JSON record and onto the overlay, and simplify those of the mesh, \
          to within PX pixels [default {DEFAULT_TOLERANCE_PX}; 0 keeps every corner]"
     );
     // With `=`, so that the word after the flag is never taken for its value.
     let flag = flags::number("outlines", "PX").long("outlines").num_args(0..=1).require_equals(true);
-    flag.default_missing_value(DEFAULT_TOLERANCE_PX.to_string()).help(help)
+    flag.default_missing_value(DEFAULT_TOLERANCE_PX.to_string())
+        .help("Put outlines (polygons) into the JSON record and onto the overlay")
+        .long_help(long)
 }
 
 fn running_flags() -> Vec<Arg> {
@@ -289,17 +327,16 @@ fn running_flags() -> Vec<Arg> {
 
 fn inspect_command() -> clap::Command {
     clap::Command::new("inspect")
-        .about("Says what is in a file: values, likely encoding, what to try")
-        .arg(flags::inputs())
+        .about("Says what is in a file: values, likely encoding, what to type next")
+        .args(flags::inputs())
         .args(flags::reading())
         .arg(flags::switch("json", "Print a JSON line for each input"))
 }
 
 fn noise_command() -> clap::Command {
     clap::Command::new("noise")
-        .about("Estimates how noisy a sensor is from maps of it, each and all together, and the flags for `detect`")
-        .after_help(EXIT_CODES)
-        .arg(flags::inputs())
+        .about("Estimates how noisy a sensor is from maps of it, and gives the flags for `detect`")
+        .args(flags::inputs())
         .args(flags::reading())
         .arg(flags::switch("json", "Print one JSON document"))
 }
@@ -308,7 +345,7 @@ fn score_command() -> clap::Command {
     let word = |id: &'static str| Arg::new(id).required(true).value_parser(value_parser!(OsString));
     clap::Command::new("score")
         .about("Scores label images against the truth: SegComp, EVOPS, Rand index and others")
-        .after_help(EXIT_CODES)
+        .after_long_help(EXIT_CODES)
         .args([
             word("truth").value_name("TRUTH").help(
                 "Label image of the truth, 0 = no plane; a folder of them; or scene:SPEC for a synthetic scene's truth",
@@ -329,7 +366,7 @@ fn score_command() -> clap::Command {
 
 fn demo_command() -> clap::Command {
     let folder = flags::path("out-dir", "DIR").default_value("depthplanes-demo").help("Where the files go");
-    clap::Command::new("demo").about("Runs a made-up scene through the whole pipeline").arg(folder)
+    clap::Command::new("demo").about("Runs a synthetic scene through the whole pipeline").arg(folder)
 }
 
 fn completions_command() -> clap::Command {
@@ -345,16 +382,19 @@ fn detect(matches: &ArgMatches) -> Detect {
     let count = |name| *matches.get_one::<usize>(name).expect("it has a default");
     let outputs = OUTPUTS.iter().filter_map(|output| Some((output, path_given(matches, output.name)?)));
     Detect {
-        inputs: inputs(matches),
+        inputs: Inputs::from_matches(matches),
         reading: Reading::from_matches(matches),
         method: method(matches).expect("it has a default"),
         parameters: flags::parameters_given(matches),
         noise_table: path_given(matches, "noise-table"),
         outputs: outputs.collect(),
         out_dir: path_given(matches, "out-dir"),
+        only: only(matches),
+        table: path_given(matches, "table"),
         legend: matches.get_flag("legend"),
         merge_coplanar: matches.get_one("merge-coplanar").copied(),
         outlines: matches.get_one("outlines").copied(),
+        min_hole: matches.get_one("min-hole").copied().unwrap_or(0),
         curved: matches.get_flag("curved"),
         json: matches.get_flag("json"),
         rows: count("rows"),
@@ -392,8 +432,10 @@ fn method(matches: &ArgMatches) -> Option<&'static MethodInfo> {
     Some(methods::find(name).expect("the parser accepts only names of the table"))
 }
 
-fn inputs(matches: &ArgMatches) -> Vec<OsString> {
-    matches.get_many::<OsString>("input").into_iter().flatten().cloned().collect()
+/// The outputs named, in the order of the table.
+fn only(matches: &ArgMatches) -> Vec<&'static Output> {
+    let names: Vec<&String> = matches.get_many("only").into_iter().flatten().collect();
+    OUTPUTS.iter().filter(|output| names.iter().any(|name| *name == output.name)).collect()
 }
 
 #[cfg(test)]

@@ -4,16 +4,21 @@ use crate::failure::{Failure, Outcome};
 use crate::natural;
 use depthplanes_io::formats::FORMATS;
 use depthplanes_io::outputs::OUTPUTS;
+use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 /// One input.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Input {
-    File(PathBuf),
+    File {
+        path: PathBuf,
+        /// The subfolders between it and the folder that was given; files of results stand in the same ones.
+        below: PathBuf,
+    },
     /// Standard input, `-`.
     Standard,
-    /// A made-up scene: what follows `scene:`.
+    /// A synthetic scene: what follows `scene:`.
     Scene(String),
 }
 
@@ -21,16 +26,24 @@ impl Input {
     /// Its name for people and records: as given.
     pub(crate) fn name(&self) -> String {
         match self {
-            Input::File(path) => path.display().to_string(),
+            Input::File { path, .. } => path.display().to_string(),
             Input::Standard => "-".into(),
             Input::Scene(spec) => format!("scene:{spec}"),
+        }
+    }
+
+    /// The subfolder of a folder of results that its files are in; mostly empty.
+    pub(crate) fn below(&self) -> &Path {
+        match self {
+            Input::File { below, .. } => below,
+            _ => Path::new(""),
         }
     }
 
     /// What the names of its files in a folder of results begin with.
     pub(crate) fn stem(&self) -> String {
         match self {
-            Input::File(path) => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+            Input::File { path, .. } => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
             Input::Standard => "stdin".into(),
             Input::Scene(spec) => {
                 let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
@@ -40,15 +53,16 @@ impl Input {
     }
 }
 
-/// All inputs that the words stand for, in the order given; folders and patterns in natural order.
+/// All inputs that the words stand for, in the order given; folders and patterns in natural order. `recursive`: folders
+/// stand for the maps in their subfolders as well.
 ///
 /// # Errors
 /// A folder without a map, a pattern without a match, standard input asked for twice. A file that
 /// does not exist is found out when it is read.
-pub(crate) fn expand(words: &[OsString]) -> Outcome<Vec<Input>> {
+pub(crate) fn expand(words: &[OsString], recursive: bool) -> Outcome<Vec<Input>> {
     let mut inputs = Vec::new();
     for word in words {
-        inputs.extend(expand_word(word)?);
+        inputs.extend(expand_word(word, recursive)?);
     }
     if inputs.iter().filter(|input| **input == Input::Standard).count() > 1 {
         return Err(Failure::request("-: standard input can be read only once; give it once"));
@@ -57,7 +71,7 @@ pub(crate) fn expand(words: &[OsString]) -> Outcome<Vec<Input>> {
 }
 
 /// A word that is no text can only be a path.
-fn expand_word(word: &OsStr) -> Outcome<Vec<Input>> {
+fn expand_word(word: &OsStr, recursive: bool) -> Outcome<Vec<Input>> {
     let path = Path::new(word);
     let word = word.to_str().unwrap_or_default();
     if word == "-" {
@@ -65,25 +79,90 @@ fn expand_word(word: &OsStr) -> Outcome<Vec<Input>> {
     } else if let Some(spec) = word.strip_prefix("scene:") {
         Ok(vec![Input::Scene(spec.into())])
     } else if path.is_dir() {
-        maps_in(path)
+        maps_in(path, recursive)
     } else if word.contains(['*', '?', '[']) && !path.exists() {
         matching(word)
     } else {
-        Ok(vec![Input::File(path.into())])
+        Ok(vec![file(path.into(), Path::new(""))])
     }
 }
 
-/// The maps of a folder: not our own outputs, not subfolders.
-fn maps_in(folder: &Path) -> Outcome<Vec<Input>> {
-    let mut maps = files_in(folder)?;
-    maps.retain(|path| !is_ours(path));
+/// A file, and the folder that was given, if it was one.
+fn file(path: PathBuf, given: &Path) -> Input {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let below = if given.as_os_str().is_empty() { Path::new("") } else { folder.strip_prefix(given).unwrap_or(folder) };
+    Input::File { below: below.into(), path }
+}
+
+/// The maps of a folder: not our own outputs; with `recursive` those of its subfolders too.
+fn maps_in(folder: &Path, recursive: bool) -> Outcome<Vec<Input>> {
+    let mut maps = own_maps(folder)?;
+    if recursive || maps.is_empty() {
+        let mut below = Vec::new();
+        for subfolder in subfolders(folder)? {
+            below.extend(own_maps(&subfolder)?);
+        }
+        if !recursive && !below.is_empty() {
+            return Err(only_in_subfolders(folder, &below));
+        }
+        maps.extend(below);
+    }
     if maps.is_empty() {
         let known = FORMATS.iter().flat_map(|format| format.extensions);
         let known: Vec<String> = known.map(|extension| format!("*.{extension}")).collect();
         let message = format!("{}: no map in this folder; looked for {}", folder.display(), known.join(", "));
         return Err(Failure::request(message));
     }
-    Ok(in_natural_order(maps))
+    Ok(in_natural_order(maps, folder))
+}
+
+/// The maps that stand in a folder itself.
+fn own_maps(folder: &Path) -> Outcome<Vec<PathBuf>> {
+    let mut maps = files_in(folder)?;
+    maps.retain(|path| !is_ours(path));
+    Ok(maps)
+}
+
+/// The folders below a folder, at any depth, but for hidden ones and those behind links.
+fn subfolders(folder: &Path) -> Outcome<Vec<PathBuf>> {
+    let (mut found, mut due) = (Vec::new(), vec![folder.to_path_buf()]);
+    while let Some(folder) = due.pop() {
+        let failed = |error| Failure::request(format!("{}: cannot be listed: {error}", folder.display()));
+        for entry in folder.read_dir().map_err(failed)? {
+            let entry = entry.map_err(failed)?;
+            let path = entry.path();
+            if entry.file_type().map_err(failed)?.is_dir() && !file_name(&path).starts_with('.') {
+                due.push(path.clone());
+                found.push(path);
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// So many subfolders are named in a message.
+const MOST_NAMED: usize = 4;
+
+/// Says which subfolders hold maps, those with most of them first.
+fn only_in_subfolders(folder: &Path, maps: &[PathBuf]) -> Failure {
+    let mut counts: BTreeMap<&Path, usize> = BTreeMap::new();
+    for map in maps {
+        *counts.entry(map.parent().unwrap_or(folder)).or_default() += 1;
+    }
+    let mut counts: Vec<(&Path, usize)> = counts.into_iter().collect();
+    counts.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
+    let one = |(folder, count): &(&Path, usize)| {
+        format!("{} ({count} file{})", folder.display(), if *count == 1 { "" } else { "s" })
+    };
+    let mut named: Vec<String> = counts.iter().take(MOST_NAMED).map(one).collect();
+    if counts.len() > MOST_NAMED {
+        named.push(format!("{} more", counts.len() - MOST_NAMED));
+    }
+    Failure::request(format!(
+        "{}: no map in this folder itself, but below it: {}; give the one you mean, or --recursive for all",
+        folder.display(),
+        named.join(", ")
+    ))
 }
 
 /// The files of a folder whose extension belongs to a format, hidden ones left out.
@@ -124,10 +203,10 @@ fn matching(pattern: &str) -> Outcome<Vec<Input>> {
     if files.is_empty() {
         return Err(Failure::request(format!("{pattern}: no file matches this pattern")));
     }
-    Ok(in_natural_order(files))
+    Ok(in_natural_order(files, Path::new("")))
 }
 
-fn in_natural_order(mut paths: Vec<PathBuf>) -> Vec<Input> {
+fn in_natural_order(mut paths: Vec<PathBuf>, given: &Path) -> Vec<Input> {
     paths.sort_by(|a, b| natural::compare(&a.to_string_lossy(), &b.to_string_lossy()));
-    paths.into_iter().map(Input::File).collect()
+    paths.into_iter().map(|path| file(path, given)).collect()
 }

@@ -66,7 +66,7 @@ fn stereo(reading: &Reading, options: &ReadOptions) -> Outcome<Option<Stereo>> {
 /// What is wrong with the file or the scene.
 pub(crate) fn frame(input: &Input, options: &ReadOptions) -> Outcome<Frame> {
     match input {
-        Input::File(path) => {
+        Input::File { path, .. } => {
             // Its bytes, the samples, the pixels and what is looked at in them.
             let needed =
                 6 * std::fs::metadata(path).map_or(0, |about| about.len().min(options.decode.limits.max_bytes as u64));
@@ -82,7 +82,7 @@ pub(crate) fn frame(input: &Input, options: &ReadOptions) -> Outcome<Frame> {
             if *options != (ReadOptions { noise, smooth_noise, decode, ..ReadOptions::default() }) {
                 frame
                     .warnings
-                    .push("a made-up scene knows its own unit and camera: flags on reading are not used".into());
+                    .push("a synthetic scene knows its own unit and camera: flags on reading are not used".into());
             }
             Ok(frame)
         }
@@ -102,7 +102,7 @@ fn refusal(error: depthplanes_io::Error) -> Failure {
     }
 }
 
-/// A made-up scene as a frame; it knows its own unit and camera.
+/// A synthetic scene as a frame; it knows its own unit and camera.
 pub(crate) fn scene(spec: &str) -> Outcome<Frame> {
     let spec = spec.parse::<Spec>()?;
     let needed = 64 * (spec.width * spec.height) as u64;

@@ -18,7 +18,7 @@ pub(crate) struct Pair {
 /// Where the truth comes from.
 pub(crate) enum Truth {
     File(PathBuf),
-    /// A made-up scene: what follows `scene:`.
+    /// A synthetic scene: what follows `scene:`.
     Scene(String),
 }
 

@@ -4,7 +4,11 @@ use crate::failure::note;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc;
+use std::sync::{Condvar, Mutex, PoisonError, mpsc};
+
+/// A job begins no item that is further than so many items for each job from the one that is due, so that a slow item does
+/// not let the results of all later ones pile up.
+const AHEAD: usize = 16;
 
 /// How many threads a map can have: what was wanted, or one if the machine makes no more, and a note says so.
 pub(crate) fn threads(wanted: usize) -> usize {
@@ -33,14 +37,17 @@ pub(crate) fn in_order<R: Send, W: FnMut(usize) -> R, E>(
         return one_by_one(count, worker, sink);
     }
     let next = AtomicUsize::new(0);
+    let due = Due { item: Mutex::new(0), moved: Condvar::new(), ahead: AHEAD * jobs };
     let (sender, receiver) = mpsc::channel();
     std::thread::scope(|scope| {
         for made in 0..jobs {
-            let (sender, next, worker) = (sender.clone(), &next, &worker);
+            let (sender, next, due, worker) = (sender.clone(), &next, &due, &worker);
             let started = std::thread::Builder::new().spawn_scoped(scope, move || {
+                let _panics = Panics(due);
                 let mut work = worker();
                 loop {
                     let item = next.fetch_add(1, Ordering::Relaxed);
+                    due.wait_for(item);
                     if item >= count || sender.send((item, work(item))).is_err() {
                         return;
                     }
@@ -55,8 +62,9 @@ pub(crate) fn in_order<R: Send, W: FnMut(usize) -> R, E>(
             }
         }
         drop(sender);
-        let outcome = deliver(receiver, &mut sink);
+        let outcome = deliver(receiver, &due, &mut sink);
         next.store(count, Ordering::Relaxed);
+        due.set(count);
         outcome
     })
 }
@@ -71,8 +79,42 @@ fn one_by_one<R, W: FnMut(usize) -> R, E>(
     (0..count).try_for_each(|item| sink(item, work(item)))
 }
 
+/// Lets all others go on where a job panics, since the item that is due may then never come.
+struct Panics<'a>(&'a Due);
+
+impl Drop for Panics<'_> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.set(usize::MAX - self.0.ahead);
+        }
+    }
+}
+
+/// The item whose result is delivered next.
+struct Due {
+    item: Mutex<usize>,
+    moved: Condvar,
+    ahead: usize,
+}
+
+impl Due {
+    fn set(&self, item: usize) {
+        let mut due = self.item.lock().unwrap_or_else(PoisonError::into_inner);
+        *due = item.max(*due);
+        self.moved.notify_all();
+    }
+
+    /// Waits until an item is near enough. The due item itself never waits.
+    fn wait_for(&self, item: usize) {
+        let due = self.item.lock().unwrap_or_else(PoisonError::into_inner);
+        let far = |due: &mut usize| item > *due + self.ahead;
+        drop(self.moved.wait_while(due, far).unwrap_or_else(PoisonError::into_inner));
+    }
+}
+
 fn deliver<R, E>(
     receiver: mpsc::Receiver<(usize, R)>,
+    due_item: &Due,
     sink: &mut impl FnMut(usize, R) -> Result<(), E>,
 ) -> Result<(), E> {
     let mut early = BTreeMap::new();
@@ -82,6 +124,7 @@ fn deliver<R, E>(
         while let Some(result) = early.remove(&due) {
             sink(due, result)?;
             due += 1;
+            due_item.set(due);
         }
     }
     Ok(())
@@ -110,6 +153,30 @@ mod tests {
         )
         .unwrap();
         assert_eq!(seen, (0..33).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_slow_item_does_not_let_the_results_of_all_later_ones_pile_up() {
+        use std::sync::atomic::{AtomicUsize, Ordering};
+        let (begun, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        let work = |item: usize| {
+            let ahead = begun.fetch_add(1, Ordering::Relaxed);
+            if item == 0 {
+                std::thread::sleep(std::time::Duration::from_millis(100));
+                most.store(begun.load(Ordering::Relaxed), Ordering::Relaxed);
+            }
+            ahead
+        };
+        in_order(10_000, 2, || work, |_, _| Ok::<(), ()>(())).unwrap();
+        assert_eq!(begun.into_inner(), 10_000);
+        assert!(most.load(Ordering::Relaxed) <= 2 * super::AHEAD + 3, "{most:?}");
+    }
+
+    #[test]
+    #[should_panic(expected = "a scoped thread panicked")]
+    fn a_job_that_panics_ends_in_a_panic_and_not_in_waiting() {
+        let work = |item: usize| assert!(item != 5);
+        let _ = in_order(10_000, 3, || work, |_, ()| Ok::<(), ()>(()));
     }
 
     #[test]

@@ -21,6 +21,8 @@ pub(crate) struct Recipe {
     pub(crate) coplanar: Option<Coplanar>,
     /// Tolerance of the planes' outlines, pixels, if they are wanted.
     outlines: Option<f64>,
+    /// Pixels of the smallest hole that they keep.
+    min_hole: usize,
     curved: bool,
 }
 
@@ -44,7 +46,7 @@ impl Recipe {
         }
         drop(method.with(given)?); // they are checked
         let threads = pool::threads(threads);
-        Ok(Recipe { method, values, threads, coplanar: None, outlines: None, curved: false })
+        Ok(Recipe { method, values, threads, coplanar: None, outlines: None, min_hole: 0, curved: false })
     }
 
     /// Several methods by name, each with those of the parameters given that it has.
@@ -64,12 +66,12 @@ impl Recipe {
         all.into_iter().map(recipe).collect()
     }
 
-    /// With the planes' outlines, simplified to within so many pixels.
+    /// With the planes' outlines, simplified to within so many pixels and without smaller holes than that.
     ///
     /// # Errors
     /// A tolerance that is not a number of pixels.
-    pub(crate) fn outlines(mut self, tolerance_px: Option<f64>) -> Outcome<Self> {
-        self.outlines = tolerance_px;
+    pub(crate) fn outlines(mut self, tolerance_px: Option<f64>, min_hole: usize) -> Outcome<Self> {
+        (self.outlines, self.min_hole) = (tolerance_px, min_hole);
         self.outliner()?;
         Ok(self)
     }
@@ -124,7 +126,8 @@ impl Recipe {
     }
 
     fn outliner(&self) -> Outcome<Option<Outliner>> {
-        Ok(self.outlines.map(Outliner::new).transpose()?)
+        let outliner = self.outlines.map(Outliner::new).transpose()?;
+        Ok(outliner.map(|outliner| outliner.min_hole_px(self.min_hole)))
     }
 
     /// A detector of it for a sensor.

@@ -4,7 +4,7 @@ use crate::table::{Align, aligned, row};
 use crate::terminal::plain;
 use depthplanes::detection::Curved;
 use depthplanes::{Detection, Measure, Plane};
-use depthplanes_io::outputs::{Report, Times, noise_in_words};
+use depthplanes_io::outputs::{Report, Times, depth_m, noise_in_words};
 
 /// One line on the frame, one on the method and what it found, one on the time if it was measured.
 pub(crate) fn summary(report: &Report<'_>) -> String {
@@ -40,6 +40,21 @@ pub(crate) fn summary(report: &Report<'_>) -> String {
     text
 }
 
+/// One line on what a camera would add and what to type, where it is not known and could be. `preset`: whether one was
+/// given, which then has no camera.
+pub(crate) fn camera_hint(report: &Report<'_>, preset: bool) -> String {
+    let sensor = report.frame.sensor;
+    let adds = "adds distance, normal and area in metres";
+    match sensor.measure {
+        _ if sensor.intrinsics.is_some() || report.frame.encoding == "grey" => String::new(),
+        Measure::Disparity => {
+            format!("no camera: --baseline METRES with --intrinsics FX,FY,CX,CY or --camera FILE {adds}\n")
+        }
+        _ if preset => format!("no camera: --intrinsics FX,FY,CX,CY or --camera FILE {adds}\n"),
+        _ => format!("no camera: --preset SENSOR, --intrinsics FX,FY,CX,CY or --camera FILE {adds}\n"),
+    }
+}
+
 /// One line on the surfaces that bend.
 fn surfaces(curved: &Curved, detection: &Detection) -> String {
     let pixels: usize = curved.regions.iter().map(|region| region.pixel_count).sum();
@@ -52,7 +67,7 @@ fn surfaces(curved: &Curved, detection: &Detection) -> String {
 
 fn meaning(measure: Measure) -> String {
     match measure {
-        Measure::Depth { metres } => format!("depth, a unit is {}", length(metres)),
+        Measure::Depth { metres } => format!("depth, 1 unit = {}", length(metres)),
         Measure::InverseDepth { .. } => "inverse depth".into(),
         Measure::Disparity => "disparity of an unknown rig".into(),
     }
@@ -77,16 +92,18 @@ fn time(times: &Times) -> String {
     format!("time: {median:.3} ms median, {min:.3} ms least; medians of the stages: {}\n", stages.join(", "))
 }
 
-/// The first planes in columns, with units in the heading; empty if there is none.
+/// The first planes in columns; empty if there is none. `depth` is along the view at the plane's middle, `distance` is that
+/// of the camera from the plane, perpendicular to it.
 pub(crate) fn table(report: &Report<'_>, most: usize) -> String {
     let planes = &report.detection.planes;
     if planes.is_empty() {
         return String::new();
     }
     let shown = &planes[..planes.len().min(most)];
-    let metric = report.is_metric();
-    let mut rows = vec![if metric { metric_heading() } else { map_heading() }];
-    rows.extend(shown.iter().map(|plane| if metric { metric_row(plane) } else { map_row(plane) }));
+    let measure = report.frame.sensor.measure;
+    let row: fn(&Plane, Measure) -> Vec<String> = if report.is_metric() { metric_row } else { map_row };
+    let mut rows = vec![if report.is_metric() { metric_heading() } else { map_heading() }];
+    rows.extend(shown.iter().map(|plane| row(plane, measure)));
     let mut text = aligned(&vec![Align::Right; rows[0].len()], &rows);
     if shown.len() < planes.len() {
         let hidden = planes.len() - shown.len();
@@ -95,15 +112,24 @@ pub(crate) fn table(report: &Report<'_>, most: usize) -> String {
     text
 }
 
+/// What two of the columns mean, where both are there.
+pub(crate) fn table_key(report: &Report<'_>) -> &'static str {
+    if report.is_metric() && !report.detection.planes.is_empty() {
+        "depth: along the view, at the plane's middle; distance: from the camera to the plane, perpendicular to it\n"
+    } else {
+        ""
+    }
+}
+
 fn metric_heading() -> Vec<String> {
-    row(["plane", "pixels", "share", "distance", "normal x", "y", "z", "rms", "area", "columns", "rows"])
+    row(["plane", "pixels", "share", "depth", "distance", "normal x", "y", "z", "rms", "area", "columns", "rows"])
 }
 
 fn map_heading() -> Vec<String> {
-    row(["plane", "pixels", "share", "mean value", "per column", "per row", "rms", "columns", "rows"])
+    row(["plane", "pixels", "share", "depth", "mean value", "per column", "per row", "rms", "columns", "rows"])
 }
 
-fn metric_row(plane: &Plane) -> Vec<String> {
+fn metric_row(plane: &Plane, measure: Measure) -> Vec<String> {
     let middle = plane.metric.map_or(unknown(6), |metric| {
         let mut cells = vec![format!("{:.3} m", metric.plane.distance)];
         cells.extend(metric.plane.normal.map(direction));
@@ -111,21 +137,22 @@ fn metric_row(plane: &Plane) -> Vec<String> {
         cells.push(metric.area_m2.map_or("-".into(), |area| format!("{area:.3} m2")));
         cells
     });
-    assemble(plane, middle)
+    assemble(plane, measure, middle)
 }
 
-fn map_row(plane: &Plane) -> Vec<String> {
+fn map_row(plane: &Plane, measure: Measure) -> Vec<String> {
     let middle = plane.fit.map_or(unknown(4), |fit| {
         let [u, v] = plane.centroid;
         let mean = fit.gradient[0] * u + fit.gradient[1] * v + fit.offset;
         [mean, fit.gradient[0], fit.gradient[1], fit.rms].map(significant).to_vec()
     });
-    assemble(plane, middle)
+    assemble(plane, measure, middle)
 }
 
-fn assemble(plane: &Plane, middle: Vec<String>) -> Vec<String> {
+fn assemble(plane: &Plane, measure: Measure, middle: Vec<String>) -> Vec<String> {
     let pixels = plane.bounding_box;
     let mut cells = vec![plane.label.to_string(), plane.pixel_count.to_string(), percent(plane.share_of_valid)];
+    cells.push(depth_m(plane, measure).map_or("-".into(), |depth| format!("{depth:.3} m")));
     cells.extend(middle);
     cells.push(format!("{}..{}", pixels.u_min, pixels.u_max));
     cells.push(format!("{}..{}", pixels.v_min, pixels.v_max));

@@ -92,6 +92,7 @@ fn every_row_of_every_table_is_listed() {
 fn every_parameter_is_listed_and_is_a_flag() {
     let bench = Bench::new("params");
     let help = bench.run(&["detect", "--help"]).ok();
+    let defaults: Vec<&str> = depthplanes::methods::default().params.iter().map(|param| param.name).collect();
     for method in depthplanes::methods::METHODS {
         let out = bench.run(&["params", method.name]).ok();
         for param in method.params {
@@ -99,7 +100,8 @@ fn every_parameter_is_listed_and_is_a_flag() {
             let line = out.lines().find(|line| line.starts_with(&format!("{flag} "))).unwrap();
             assert!(line.contains(&param.default.to_string()) && line.contains(param.meaning), "{line}");
             assert!(line.contains(param.source.unwrap_or("ours")), "{line}");
-            assert!(help.contains(&format!("{flag} <NUMBER>")), "{flag}\n{help}");
+            let shown = help.contains(&format!("{flag} <NUMBER>"));
+            assert_eq!(shown, defaults.contains(&param.name), "{flag}\n{help}");
         }
     }
 }
@@ -156,4 +158,102 @@ fn headerless_samples_are_read_with_their_size() {
     let out = bench.run(&["detect", "map.raw", "--raw-size", "32x24", "--json"]).ok();
     let record: serde_json::Value = serde_json::from_str(&out).unwrap();
     assert_eq!(record["planes"].as_array().unwrap().len(), 2);
+}
+
+/// Columns and lines of a page of help.
+const PAGE: (usize, usize) = (100, 45);
+
+#[test]
+fn the_short_help_of_every_command_is_a_page() {
+    let bench = Bench::new("short_help");
+    let whole = bench.run(&["-h"]).ok();
+    let listed = whole.lines().filter(|line| line.starts_with("  ") && line.as_bytes()[2].is_ascii_lowercase());
+    let commands: Vec<&str> =
+        listed.filter_map(|line| line.split_whitespace().next()).filter(|word| *word != "depthplanes").collect();
+    assert!(commands.len() >= 17, "{whole}");
+    for command in std::iter::once(None).chain(commands.into_iter().map(Some)) {
+        let words: Vec<&str> = command.into_iter().chain(["-h"]).collect();
+        let help = bench.run(&words).ok();
+        assert!(help.lines().count() < PAGE.1, "{words:?}: {} lines\n{help}", help.lines().count());
+        assert!(help.lines().all(|line| line.chars().count() <= PAGE.0), "{words:?}\n{help}");
+    }
+}
+
+#[test]
+fn help_tells_users_commands_from_those_of_research() {
+    let bench = Bench::new("groups");
+    let help = bench.run(&["-h"]).ok();
+    let (users, research) = help.split_once("\nResearch").unwrap();
+    for (part, commands) in [
+        (users, &["detect", "inspect", "explain", "demo", "noise", "presets", "encodings", "formats", "params"][..]),
+        (users, &["methods", "completions", "man"]),
+        (research, &["score", "compare", "eval", "datasets", "paper"]),
+    ] {
+        for command in commands {
+            assert!(part.contains(&format!("\n  {command} ")), "{command}\n{help}");
+        }
+    }
+}
+
+#[test]
+fn help_shows_the_default_methods_parameters_and_takes_those_of_all() {
+    let bench = Bench::with_map("help_parameters");
+    let help = bench.run(&["detect", "--help"]).ok();
+    assert!(!help.contains("--theta") && !help.contains("ngaf:"), "{help}");
+    let short = bench.run(&["detect", "-h"]).ok();
+    for flag in ["--preset", "--intrinsics", "--camera", "--encoding", "--scale", "--labels", "--out-dir", "--min "] {
+        assert!(short.contains(flag), "{flag}\n{short}");
+    }
+    bench.run(&["detect", "map.pgm", "--method", "ngaf", "--theta", "3"]).ok();
+    let man = bench.run(&["man", "--out-dir", "m"]).ok();
+    assert!(man.contains("pages in m"));
+    let page = String::from_utf8(bench.read("m/depthplanes-detect.1")).unwrap();
+    assert!(page.contains("theta"), "{page}");
+}
+
+/// The command that `inspect` ends with, and all it prints.
+fn typed_next(bench: &Bench, words: &[&str]) -> (Vec<String>, String) {
+    let out = bench.run(&[&["inspect"], words].concat()).ok();
+    let line = out.lines().find_map(|line| line.trim_start().strip_prefix("type next  depthplanes "));
+    let words = line.unwrap_or_else(|| panic!("{out}")).split(' ').map(|word| word.trim_matches('\'').to_string());
+    (words.collect(), out.clone())
+}
+
+#[test]
+fn what_inspect_says_to_type_next_works() {
+    let bench = Bench::with_map("type_next");
+    let fives: Vec<u8> = (0..64 * 48u32).flat_map(|at| (5000 + 5 * (at % 64) as u16).to_be_bytes()).collect();
+    bench.write("fives.pgm", &[b"P5 64 48 65535\n".to_vec(), fives].concat());
+    let size: Vec<u8> = (0..640 * 480u32).flat_map(|at| (1500 + (at % 640 + at / 640) as u16).to_be_bytes()).collect();
+    bench.write("vga.pgm", &[b"P5 640 480 65535\n".to_vec(), size].concat());
+    bench
+        .write("grey.pgm", &[b"P5 64 48 255\n".to_vec(), (0..64 * 48u32).map(|at| (at % 64) as u8).collect()].concat());
+    for (words, wanted, more) in [
+        (&["map.pgm"][..], "detect map.pgm --encoding millimetre", "--intrinsics FX,FY,CX,CY or --camera FILE"),
+        (&["fives.pgm"], "detect fives.pgm --encoding tum", "--camera FILE"),
+        (&["vga.pgm"], "detect vga.pgm --encoding millimetre", "--preset kinect1 "),
+        (&["vga.pgm", "--preset", "kinect1"], "detect vga.pgm --preset kinect1", ""),
+        (&["vga.pgm", "--scale", "500"], "detect vga.pgm --scale 500", "--camera FILE"),
+        (&["map.pgm", "--disparity"], "detect map.pgm --disparity", "--baseline METRES"),
+        (&["grey.pgm", "--encoding", "grey"], "detect grey.pgm --encoding grey", ""),
+        (&["scene:room:size=64x48"], "detect scene:room:size=64x48", ""),
+    ] {
+        let (next, out) = typed_next(&bench, words);
+        assert_eq!(next.join(" "), wanted, "{out}");
+        assert!(out.contains(more), "{out}");
+        bench.run(&next.iter().map(String::as_str).collect::<Vec<_>>()).ok();
+    }
+}
+
+#[test]
+fn what_inspect_says_to_type_next_works_for_recorded_maps() {
+    let Some(data) = support::data() else { return };
+    let bench = Bench::new("type_next_recorded");
+    for file in
+        ["gt_real/pcl.depth.png", "gt_real/tum_fr3.depth.png", "pcl_kinect/office1.pcd", "pfm/terrace/disp0.pfm"]
+    {
+        let path = data.join(file);
+        let (next, _) = typed_next(&bench, &[path.to_str().unwrap()]);
+        bench.run(&next.iter().map(String::as_str).collect::<Vec<_>>()).ok();
+    }
 }

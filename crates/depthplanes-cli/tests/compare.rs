@@ -8,7 +8,7 @@ use support::Bench;
 const SCENE: &str = "scene:planes3:size=160x120";
 
 #[test]
-fn every_method_has_a_line_and_a_made_up_scene_its_truth() {
+fn every_method_has_a_line_and_a_synthetic_scene_its_truth() {
     let bench = Bench::new("compare_all");
     let out = bench.run(&["compare", SCENE, "--repeat", "1"]).ok();
     let cells = |name: &str| -> Vec<String> {

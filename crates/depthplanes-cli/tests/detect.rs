@@ -20,11 +20,11 @@ fn without_output_flags_a_table_is_printed() {
     assert!(lines[0].starts_with("map.pgm: 32 x 24, "), "{out}");
     assert!(lines[1].starts_with("planar, noise estimated"), "{out}");
     assert!(lines[1].ends_with("2 planes on 100.0 % of the valid pixels"), "{out}");
-    assert!(
-        lines[2].split_whitespace().eq("plane pixels share mean value per column per row rms columns rows".split(' '))
-    );
-    let first: Vec<&str> = lines[3].split_whitespace().collect();
-    assert_eq!(first[..5], ["1", "384", "51.1", "%", "1503"], "{out}");
+    assert!(lines[2].starts_with("no camera: "), "{out}");
+    let heading = "plane pixels share depth mean value per column per row rms columns rows";
+    assert!(lines[3].split_whitespace().eq(heading.split(' ')), "{out}");
+    let first: Vec<&str> = lines[4].split_whitespace().collect();
+    assert_eq!(first[..7], ["1", "384", "51.1", "%", "1.503", "m", "1503"], "{out}");
     assert_eq!(bench.names(), ["map.pgm"]);
 }
 
@@ -245,7 +245,7 @@ fn a_map_can_come_from_standard_input() {
 }
 
 #[test]
-fn a_made_up_scene_is_an_input() {
+fn a_synthetic_scene_is_an_input() {
     let bench = Bench::new("scene");
     let record = json(&bench.run(&["detect", "scene:room:size=160x120,seed=3", "--json"]).ok());
     assert_eq!((&record["width"], &record["height"]), (&Value::from(160), &Value::from(120)));
@@ -361,4 +361,131 @@ fn what_needs_metres_says_how_to_state_the_camera() {
         "{err}"
     );
     bench.run(&["detect", "map.pgm", "--merge-coplanar=3"]).fails(2);
+}
+
+#[test]
+fn only_the_outputs_named_are_written() {
+    let bench = Bench::with_map("only");
+    bench.run(&["detect", "map.pgm", "--out-dir", "d", "--only", "overlay,planes"]).ok();
+    assert_eq!(names_in(&bench.folder.join("d")), ["map.overlay.png", "map.planes.json"]);
+    let err = bench.run(&["detect", "map.pgm", "--out-dir", "e", "--only", "overlay,pictures"]).fails(2);
+    assert!(err.contains("labels, overlay, planes, cloud, mesh, curved-labels"), "{err}");
+    let err = bench.run(&["detect", "map.pgm", "--out-dir", "e", "--only", "cloud"]).fails(2);
+    assert!(err.contains("--intrinsics fx,fy,cx,cy"), "{err}");
+    let err = bench.run(&["detect", "map.pgm", "--only", "overlay"]).fails(2);
+    assert!(err.contains("--out-dir"), "{err}");
+    bench.run(&["detect", "map.pgm", "--out-dir", "c", "--only", "curved-labels"]).ok();
+    assert_eq!(names_in(&bench.folder.join("c")), ["map.curved.png"]);
+}
+
+#[test]
+fn one_table_holds_the_planes_of_all_inputs_but_the_bad() {
+    let bench = Bench::new("one_table");
+    std::fs::create_dir(bench.folder.join("maps")).unwrap();
+    for i in 0..40u16 {
+        bench.write(&format!("maps/frame{i}.pgm"), &two_planes(600 + i));
+    }
+    bench.write("maps/frame7.pgm", b"P5 never");
+    bench.write("all.csv", b"what stood there before");
+    let ran = bench.run(&["detect", "maps", "--table", "all.csv", "--jobs", "3"]);
+    assert_eq!(ran.code, Some(2));
+    assert!(ran.err.contains("maps/frame7.pgm: ") && ran.err.contains("1 of 40 inputs failed"), "{ran:?}");
+    assert!(ran.out.contains("\nwrote all.csv: 78 planes of 39 inputs\n"), "{ran:?}");
+    assert_eq!(ran.out.matches("no camera: --preset").count(), 1, "{ran:?}");
+    let csv = String::from_utf8(bench.read("all.csv")).unwrap();
+    let rows: Vec<&str> = csv.lines().collect();
+    assert!(rows[0].starts_with("source,label,") && rows.len() == 79, "{csv}");
+    assert!(rows[1].starts_with("maps/frame0.pgm,1,") && rows[78].starts_with("maps/frame39.pgm,2,"), "{csv}");
+    let ran = bench.run(&["detect", "maps", "--table", "all.jsonl", "--json"]);
+    assert_eq!(String::from_utf8(bench.read("all.jsonl")).unwrap(), ran.out);
+    assert_eq!(bench.names(), ["all.csv", "all.jsonl", "maps"]);
+}
+
+#[test]
+fn a_table_that_cannot_be_written_is_refused_and_a_bad_input_leaves_the_old_one() {
+    let bench = Bench::with_map("bad_table");
+    bench.write("old.csv", b"old");
+    bench.write("bad.pgm", b"P5 never");
+    for (words, said) in [
+        (["map.pgm", "--table", "t.txt"], ".csv or .jsonl"),
+        (["map.pgm", "--table", "none/t.csv"], "make it first"),
+        (["bad.pgm", "--table", "old.csv"], "bad.pgm"),
+    ] {
+        let err = bench.run(&[&["detect"], &words[..]].concat()).fails(2);
+        assert!(err.contains(said), "{err}");
+    }
+    let both = ["detect", "map.pgm", "--table", "t.csv", "--planes", "./t.csv"];
+    assert!(bench.run(&both).fails(2).contains("would overwrite"));
+    assert_eq!(bench.read("old.csv"), b"old");
+    assert_eq!(bench.names(), ["bad.pgm", "map.pgm", "old.csv"]);
+}
+
+#[test]
+fn folders_in_depth_are_named_or_read_with_their_own_folders_of_results() {
+    let bench = Bench::new("in_depth");
+    for (folder, file) in
+        [("seq/left", "a.pgm"), ("seq/left", "b.pgm"), ("seq/right/deep", "a.pgm"), ("seq/.hid", "c.pgm")]
+    {
+        std::fs::create_dir_all(bench.folder.join(folder)).unwrap();
+        bench.write(&format!("{folder}/{file}"), &two_planes(900));
+    }
+    let err = bench.run(&["detect", "seq"]).fails(2);
+    assert!(
+        err.contains("seq/left (2 files), seq/right/deep (1 file); give the one you mean, or --recursive"),
+        "{err}"
+    );
+    for _ in 0..2 {
+        // The second time the results stand below the folder that is read.
+        let words = ["detect", "seq", "--recursive", "--out-dir", "seq/out", "--only", "labels", "--json"];
+        let out = bench.run(&words).ok();
+        let sources: Vec<Value> = out.lines().map(|line| json(line)["source"].clone()).collect();
+        assert_eq!(sources, ["seq/left/a.pgm", "seq/left/b.pgm", "seq/right/deep/a.pgm"]);
+    }
+    assert_eq!(names_in(&bench.folder.join("seq/out/left")), ["a.labels.png", "b.labels.png"]);
+    assert_eq!(names_in(&bench.folder.join("seq/out/right/deep")), ["a.labels.png"]);
+    let err = bench.run(&["detect", "seq/left", "seq/right/deep", "--out-dir", "flat"]).fails(2);
+    assert!(err.contains("would overwrite"), "{err}");
+    assert_eq!(bench.run(&["inspect", "seq", "--recursive", "--json"]).ok().lines().count(), 3);
+    std::fs::create_dir(bench.folder.join("empty")).unwrap();
+    assert!(bench.run(&["detect", "empty"]).fails(2).contains("no map in this folder; looked for"));
+}
+
+#[test]
+fn small_holes_of_outlines_are_filled_on_request() {
+    let bench = Bench::new("min_hole");
+    let value = |at: usize| if [300, 301, 500].contains(&at) { 0u16 } else { 1000 };
+    let pixels = (0..32 * 24).flat_map(|at| value(at).to_be_bytes());
+    bench.write("holes.pgm", &[b"P5 32 24 65535\n".to_vec(), pixels.collect()].concat());
+    let holes = |more: &[&str]| {
+        let record = json(&bench.run(&[&["detect", "holes.pgm", "--json", "--outlines=0"], more].concat()).ok());
+        let holes = record["planes"][0]["outline"]["polygons_px"][0]["holes"].as_array().unwrap().len();
+        (holes, record.get("outline_min_hole_px").cloned())
+    };
+    assert_eq!(holes(&[]), (2, None));
+    assert_eq!(holes(&["--min-hole", "2"]), (1, Some(2.into())));
+    assert_eq!(holes(&["--min-hole", "3"]), (0, Some(3.into())));
+    assert!(bench.run(&["detect", "holes.pgm", "--min-hole", "3"]).fails(2).contains("--outlines"));
+    bench.run(&["detect", "holes.pgm", "--outlines", "--min-hole=-1"]).fails(2);
+}
+
+#[test]
+fn depth_stands_beside_distance_and_a_missing_camera_is_a_line_of_the_summary() {
+    let bench = Bench::with_map("depth_column");
+    let ran = bench.run(&["detect", "map.pgm", "--encoding", "millimetre"]);
+    assert!(!ran.err.contains("camera"), "{ran:?}");
+    assert!(
+        ran.out.contains("\nno camera: --preset SENSOR, --intrinsics FX,FY,CX,CY or --camera FILE adds"),
+        "{ran:?}"
+    );
+    assert!(ran.ok().contains("51.1 %  1.503 m"));
+    assert!(!bench.run(&["detect", "map.pgm", "--json"]).ok().contains("no camera"));
+    let out = bench.run(&["detect", "map.pgm", "--encoding", "grey"]).ok();
+    assert!(!out.contains("no camera"), "{out}");
+    let out = bench.run(&["detect", "map.pgm", "--disparity"]).ok();
+    assert!(out.contains("no camera: --baseline METRES"), "{out}");
+    let out = bench.run(&["detect", "map.pgm", "--preset", "azure-kinect"]).ok();
+    assert!(out.contains("no camera: --intrinsics"), "{out}");
+    let camera = ["--encoding", "millimetre", "--intrinsics", "30,30,15.5,11.5"];
+    let out = bench.run(&[&["detect", "map.pgm"], &camera[..]].concat()).ok();
+    assert!(!out.contains("no camera") && out.contains("depth: along the view"), "{out}");
 }

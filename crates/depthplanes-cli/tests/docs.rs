@@ -144,7 +144,7 @@ fn the_tables_of_the_readme_are_the_libraries_tables() {
 }
 
 #[test]
-fn the_tables_of_made_up_scenes_are_the_librarys_tables() {
+fn the_tables_of_synthetic_scenes_are_the_librarys_tables() {
     let _alone = DOCUMENTS.lock();
     let path = root().join("docs/cli.md");
     let text = std::fs::read_to_string(&path).unwrap();

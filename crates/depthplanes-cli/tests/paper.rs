@@ -26,19 +26,19 @@ fn without_maps(name: &str, methods: &'static str) -> (Bench, Vec<&'static str>)
 }
 
 #[test]
-fn made_up_maps_stand_in_for_the_papers_and_the_report_says_so() {
-    let (bench, words) = without_maps("paper_made_up", "fpdidm");
+fn synthetic_maps_stand_in_for_the_papers_and_the_report_says_so() {
+    let (bench, words) = without_maps("paper_synthetic", "fpdidm");
     let ran = bench.run(&words);
-    assert!(ran.err.contains("not in none: made-up maps stand in for Sawtooth, Venus,"), "{ran:?}");
+    assert!(ran.err.contains("not in none: synthetic maps stand in for Sawtooth, Venus,"), "{ran:?}");
     let out = ran.ok();
     let page = String::from_utf8(bench.read("report/report.md")).unwrap();
     let rows = rows(&bench);
-    let [ngaf, fpdidm] = ["ngaf min 256", "fpdidm min 256"].map(|label| planes(&rows, "Sawtooth (made up)", label));
+    let [ngaf, fpdidm] = ["ngaf min 256", "fpdidm min 256"].map(|label| planes(&rows, "Sawtooth (synthetic)", label));
     let counts =
-        format!("| Sawtooth (made up) | 256 | {ngaf} | {fpdidm} | {} |", if ngaf == fpdidm { "yes" } else { "no" });
+        format!("| Sawtooth (synthetic) | 256 | {ngaf} | {fpdidm} | {} |", if ngaf == fpdidm { "yes" } else { "no" });
     for part in [
-        "All maps here are made up: none of the files is at hand.",
-        "| Sawtooth (made up) | Middlebury | middlebury/sawtooth/disp2.pgm | scene:planes3:",
+        "All maps here are synthetic: none of the files is at hand.",
+        "| Sawtooth (synthetic) | Middlebury | middlebury/sawtooth/disp2.pgm | scene:planes3:",
         "33 times as fast as HSBSR (here ransac, its detector) | Middlebury | ransac was not run | - |",
         "about 8 % more planes than FPDIDM (our reconstruction) | Kinect | ",
         &counts,
@@ -88,7 +88,7 @@ fn planes_of_the_papers_maps_are_those_of_its_page_of_tables() {
         "--report",
         "report",
     ]);
-    assert!(!ran.err.contains("made-up"), "{ran:?}");
+    assert!(!ran.err.contains("synthetic"), "{ran:?}");
     ran.ok();
     let rows = rows(&bench);
     let page = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/paper-tables.md");

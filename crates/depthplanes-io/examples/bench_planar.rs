@@ -1,4 +1,4 @@
-//! Times `planar` on recorded frames and on made-up ones of several sizes, on one thread and on two, and a copy of the
+//! Times `planar` on recorded frames and on synthetic ones of several sizes, on one thread and on two, and a copy of the
 //! frame, in turn, so that the machine's drift meets all of them alike. Every answer is held against the first.
 //!
 //! `bench_planar ROUNDS DATA [PROGRAM]` writes one CSV row for each frame and number of threads: medians in microseconds,
@@ -23,8 +23,8 @@ const RECORDED: [(&str, &str, [f64; 4]); 6] = [
     ("gt_real/lpvo_hall_125.depth.png", "millimetre", [525.0, 525.0, 319.5, 239.5]),
     ("gt_real/mosd_learn9.depth.png", "millimetre", [525.0, 525.0, 319.5, 239.5]),
 ];
-/// Made-up frames: sensor, columns, rows. The first with white noise alone.
-const MADE_UP: [(&str, usize, usize); 5] = [
+/// Synthetic frames: sensor, columns, rows. The first with white noise alone.
+const SYNTHETIC: [(&str, usize, usize); 5] = [
     ("kinect_white", 640, 480),
     ("kinect", 640, 480),
     ("kinect", 1280, 720),
@@ -67,7 +67,7 @@ fn main() -> Outcome<()> {
         });
         bench(&Frame { name: file, view: frame.view()?, sensor: frame.sensor }, rounds, other)?;
     }
-    for (sensor, width, height) in MADE_UP {
+    for (sensor, width, height) in SYNTHETIC {
         let spec = format!("random:sensor={sensor},size={width}x{height}");
         let frame = spec.parse::<Spec>()?.frame()?;
         // Large frames take long, and their times vary less.

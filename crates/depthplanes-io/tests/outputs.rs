@@ -173,7 +173,7 @@ fn cloud_holds_every_valid_pixel_in_metres() {
     assert_eq!(labels.iter().filter(|&&label| label == 3).count(), detection.planes[2].pixel_count);
 }
 
-/// A made-up room and its planes, many of them with holes.
+/// A synthetic room and its planes, many of them with holes.
 fn room() -> (Frame, Detection) {
     let scene =
         "room:seed=2,sensor=tof_white,size=160x120".parse::<depthplanes::scene::Spec>().unwrap().frame().unwrap();

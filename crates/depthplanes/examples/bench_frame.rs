@@ -1,4 +1,4 @@
-//! Writes the pixels of a made-up frame, raw and little-endian, for benchmarks and oracles:
+//! Writes the pixels of a synthetic frame, raw and little-endian, for benchmarks and oracles:
 //! `bench_frame SPEC FILE`, SPEC as in `room:seed=1,sensor=kinect_white,size=640x480`. Prints its size.
 
 use depthplanes::scene::{ScenePixels, Spec};

@@ -11,7 +11,7 @@ pub(crate) fn main() -> depthplanes::Result<()> {
     for number in 1..=5 {
         // Here your camera's next frame.
         let frame = format!("stairs:seed={number},sensor=kinect,size=320x240").parse::<Spec>()?.frame()?;
-        let camera: Intrinsics = frame.sensor.intrinsics.expect("a made-up camera is known");
+        let camera: Intrinsics = frame.sensor.intrinsics.expect("a synthetic camera is known");
         let detector = detector.get_or_insert_with(|| Detector::default().sensor(frame.sensor).threads(2));
 
         let (start, mut before, mut stages) = (Instant::now(), Duration::ZERO, Vec::new());

@@ -1,4 +1,4 @@
-//! What a detection promises, recomputed naively from its label image: over random maps and made-up scenes.
+//! What a detection promises, recomputed naively from its label image: over random maps and synthetic scenes.
 
 mod naive;
 

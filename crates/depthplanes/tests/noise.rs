@@ -1,4 +1,4 @@
-//! Noise models against their formulas, and estimates against the noise of made-up scenes.
+//! Noise models against their formulas, and estimates against the noise of synthetic scenes.
 
 use depthplanes::methods::Planar;
 use depthplanes::noise::{Estimate, Estimator, MAX_ROWS, NoiseModel, NoiseTable, Patch, SensorNoise};
@@ -229,7 +229,7 @@ fn ratios(scene: &str, sensor: SensorModel) -> [[f64; 2]; 2] {
 }
 
 #[test]
-fn the_parts_of_made_up_cameras_are_told_apart() {
+fn the_parts_of_synthetic_cameras_are_told_apart() {
     use SensorModel::{AzureKinect, KinectV1, KinectV1White, KinectV2, RealSense, Stereo, TofWhite};
     for sensor in [KinectV1, KinectV2, AzureKinect, RealSense, Stereo, KinectV1White, TofWhite] {
         for scene in ["room", "boxes"] {

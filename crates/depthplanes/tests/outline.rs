@@ -120,6 +120,50 @@ fn filling_the_exact_rings_gives_back_the_mask() {
     assert!(holes > 300, "{holes} holes");
 }
 
+/// A plane, a hole in it, the plane again in the hole and so on, in rings of that many pixels.
+fn squares_in_squares(found: &mut Detection, pixels: usize) {
+    let (width, height) = (found.width, found.height);
+    for (at, label) in found.labels.iter_mut().enumerate() {
+        let (u, v) = (at % width, at / width);
+        let from_edge = u.min(v).min(width - 1 - u).min(height - 1 - v);
+        if *label != 2 {
+            *label = u16::from((from_edge / pixels).is_multiple_of(2) && !found.planes.is_empty());
+        }
+    }
+}
+
+#[test]
+fn small_holes_are_filled_and_what_stood_in_them_is_covered_once() {
+    let mut random = Random(77);
+    let (mut filled, mut islands) = (0, 0);
+    for round in 0..1500 {
+        let mut found = label_image(&mut random);
+        if round % 3 == 0 {
+            squares_in_squares(&mut found, 1 + random.below(3) as usize);
+        }
+        let min_hole = [0, 1, 2, 5, 12, 40, 1000][round % 7];
+        let all = outlines(&found, 0.0);
+        let mut outliner = Outliner::new(0.0).unwrap().min_hole_px(min_hole);
+        let kept = outliner.outline(&found, None).unwrap().clone();
+        assert_eq!(kept.min_hole_px(), min_hole);
+        for (outline, after) in all.iter().zip(kept.iter()) {
+            let (before, after) = (rings(&outline), rings(&after));
+            let small = |ring: &(bool, Vec<Point>)| ring.0 && area(&ring.1).abs() < min_hole as f64;
+            assert!(!after.iter().any(small));
+            let gone: Vec<_> = before.iter().filter(|ring| small(ring)).collect();
+            filled += gone.len();
+            islands += before.len() - after.len() - gone.len();
+            for (pixel, label) in pixels(&found) {
+                let turns: i32 = after.iter().map(|(_, ring)| winding(ring, pixel)).sum();
+                let covered = gone.iter().any(|(_, ring)| winding(ring, pixel) != 0);
+                let wanted = i32::from(covered || label == outline.label());
+                assert_eq!(turns, wanted, "{pixel:?} of {found:?}, holes below {min_hole}");
+            }
+        }
+    }
+    assert!(filled > 300 && islands > 10, "{filled} holes, {islands} islands");
+}
+
 #[test]
 fn each_connected_part_is_one_polygon() {
     let mut random = Random(2);

@@ -1,4 +1,4 @@
-//! The method `planar` against the exact truth of made-up scenes.
+//! The method `planar` against the exact truth of synthetic scenes.
 
 use depthplanes::explanation::Verdict;
 use depthplanes::metrics::{Contingency, evops};

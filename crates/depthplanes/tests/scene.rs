@@ -1,4 +1,4 @@
-//! Made-up scenes: is the truth true, and do the sensors err as they say?
+//! Synthetic scenes: is the truth true, and do the sensors err as they say?
 
 use depthplanes::camera::Measure;
 use depthplanes::scene::{

@@ -1,4 +1,4 @@
-//! Do made-up cameras err as real ones do? Residuals of large planes about their own least-squares
+//! Do synthetic cameras err as real ones do? Residuals of large planes about their own least-squares
 //! plane, single pixels and means over blocks, against those of recorded frames.
 //!
 //! `cargo test -p depthplanes --test sensors -- --nocapture` prints the table.
@@ -102,7 +102,7 @@ impl Residuals {
     }
 }
 
-/// The large planes of made-up rooms as that sensor sees them.
+/// The large planes of synthetic rooms as that sensor sees them.
 fn planes(sensor: SensorModel) -> Vec<Residuals> {
     let mut found = Vec::new();
     for scene in ["room", "random"] {
@@ -116,7 +116,7 @@ fn planes(sensor: SensorModel) -> Vec<Residuals> {
 }
 
 #[test]
-fn made_up_cameras_err_as_recorded_ones() {
+fn synthetic_cameras_err_as_recorded_ones() {
     println!("sensor     planes       1       4       8      16      32   pixel  stated  smooth  stated");
     let mut wrong = Vec::new();
     for (sensor, unit, recorded) in RECORDED {

@@ -1,12 +1,28 @@
 //! Flags that several commands share, and those that come from the libraries' tables.
 
+use super::help;
 use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
-use depthplanes::methods::{METHODS, Param};
+use depthplanes::methods::{METHODS, MethodInfo, Param};
 use depthplanes_io::encoding::ENCODINGS;
 use depthplanes_io::presets::SENSOR_PRESETS;
 use std::ffi::OsString;
 use std::path::PathBuf;
+
+/// The words that stand for inputs.
+pub(crate) struct Inputs {
+    pub(crate) words: Vec<OsString>,
+    /// Whether folders stand for the maps of their subfolders as well.
+    pub(crate) recursive: bool,
+}
+
+impl Inputs {
+    pub(super) fn from_matches(matches: &ArgMatches) -> Self {
+        let words = matches.get_many::<OsString>("input").into_iter().flatten().cloned().collect();
+        Inputs { words, recursive: matches.get_flag("recursive") }
+    }
+}
 
 /// How the inputs are to be read, as given.
 #[derive(Clone, Debug, Default)]
@@ -29,6 +45,8 @@ pub(crate) struct Reading {
     pub(crate) member: Option<String>,
     pub(crate) max_pixels: usize,
     pub(crate) max_bytes: usize,
+    /// All of it in the words that were given.
+    pub(crate) words: Vec<String>,
 }
 
 impl Reading {
@@ -68,16 +86,34 @@ impl Reading {
             valid_range: matches.get_one("valid-range").copied(),
             raw_size: matches.get_one("raw-size").copied(),
             member: text("member"),
+            words: words_given(matches),
         }
     }
 }
 
-pub(super) fn inputs() -> Arg {
+/// The flags on reading as they were given, with their values.
+fn words_given(matches: &ArgMatches) -> Vec<String> {
+    let mut words = Vec::new();
+    for arg in reading() {
+        let id = arg.get_id().as_str();
+        if matches.value_source(id) != Some(ValueSource::CommandLine) {
+            continue;
+        }
+        words.push(format!("--{id}"));
+        if arg.get_action().takes_values() {
+            words.extend(matches.get_raw(id).into_iter().flatten().map(|value| value.to_string_lossy().into_owned()));
+        }
+    }
+    words
+}
+
+pub(super) fn inputs() -> [Arg; 2] {
     let input = Arg::new("input").value_name("INPUT").required(true).num_args(1..);
-    input.value_parser(value_parser!(OsString)).help(
+    let input = input.value_parser(value_parser!(OsString)).help(
         "Files, folders (all their maps, in natural order), patterns such as 'maps/*.png', \
          - for standard input, or scene:SPEC for a synthetic scene",
-    )
+    );
+    [input, switch("recursive", "Folders stand for the maps in their subfolders as well").help_heading("Input")]
 }
 
 pub(super) fn reading() -> Vec<Arg> {
@@ -85,35 +121,31 @@ pub(super) fn reading() -> Vec<Arg> {
     let presets = PossibleValuesParser::new(SENSOR_PRESETS.iter().map(|preset| preset.name));
     let listed = |arg: Arg| arg.hide_possible_values(true);
     let all = [
+        listed(Arg::new("preset").value_parser(presets).value_name("SENSOR"))
+            .help("A known sensor: its encoding, nominal camera and noise"),
+        numbers::<4>("intrinsics", "FX,FY,CX,CY").help("The camera: focal lengths and principal point, pixels"),
+        path("camera", "FILE").help("Camera file: ROS, Open3D, BOP, KITTI, Middlebury and others"),
         listed(Arg::new("encoding").value_parser(PossibleValuesParser::new(encodings)).value_name("NAME"))
             .help("What the numbers mean; `depthplanes encodings` lists the names"),
-        listed(Arg::new("preset").value_parser(presets).value_name("SENSOR"))
-            .help("Encoding and camera of a known sensor; `depthplanes presets` lists the names"),
         number("scale", "UNITS_PER_METRE")
-            .help("Map units in a metre, or what `depthplanes encodings` states as the encoding's scale"),
-        number("depth-scale", "METRES").help(
-            "Metres of a map unit, as cameras state their depth scale (RealSense: get_depth_scale); instead of --scale",
-        ),
-        switch(
-            "ray-distance",
-            "The values are distances along the rays, not depths: they are turned into depth; needs a camera",
-        ),
-        numbers::<4>("intrinsics", "FX,FY,CX,CY").help("Focal lengths and principal point, pixels"),
-        path("camera", "FILE").help("Camera file: ROS, Open3D, BOP, KITTI, Middlebury and others"),
-        switch("disparity", "The numbers are disparities; with --focal and --baseline they become metric"),
-        switch("swap-bytes", "Swap the two bytes of 16-bit samples"),
-        number("baseline", "METRES").help("Baseline of the stereo rig"),
-        number("focal", "PIXELS").help("Focal length of the stereo rig"),
-        number("doffs", "PIXELS").help("Difference of the two principal points (Middlebury's doffs)"),
+            .help("Map units in a metre: 1000 for millimetres")
+            .long_help("Map units in a metre, or what `depthplanes encodings` states as the encoding's scale"),
+        number("depth-scale", "METRES").help("Metres in a map unit, instead of --scale: RealSense's depth scale"),
+        switch("ray-distance", "The values are distances along the rays; they are turned into depth"),
         number("missing", "VALUE").help("A value that means `missing`, beside 0, NaN and the infinities"),
         numbers::<2>("valid-range", "LO,HI").help("Only values within this range, in map units, are valid"),
+        switch("disparity", "The numbers are disparities; with --focal and --baseline they become metric"),
+        number("focal", "PIXELS").help("Focal length of the stereo rig"),
+        number("baseline", "METRES").help("Baseline of the stereo rig"),
+        number("doffs", "PIXELS").help("Difference of the two principal points (Middlebury's doffs)"),
         Arg::new("raw-size").value_name("WxH").value_parser(size).help("Size of a headerless file"),
         Arg::new("member").value_name("NAME").help("The array to read from a file that holds several"),
+        switch("swap-bytes", "Swap the two bytes of 16-bit samples"),
         limit("max-pixels", MAX_PIXELS)
             .help("Refuse larger maps; `planar` needs 24 bytes of memory a pixel, with all outputs 64"),
         limit("max-bytes", MAX_BYTES).help("Refuse longer files, and maps that unpack to more"),
     ];
-    all.into_iter().map(|arg| with_long_name(arg).help_heading("Reading")).collect()
+    all.into_iter().map(with_name_and_heading).collect()
 }
 
 /// The most pixels of a map unless the user says otherwise, 33.5 million: a gigabyte of memory.
@@ -131,33 +163,55 @@ fn limit(id: &'static str, default: usize) -> Arg {
     })
 }
 
-/// A flag for each parameter of any method; methods share the flags of the names they share. Whose it is stands before
-/// the meaning, unless all have it and mean the same.
-pub(super) fn method_parameters() -> Vec<Arg> {
-    parameter_names().into_iter().map(method_parameter).collect()
+/// Heading of the method and its parameters.
+pub(super) const METHOD: &str = "Method";
+
+/// A flag for each parameter of any method; methods share the flags of the names they share. Help shows those of some
+/// methods alone. Whose a parameter is stands before its meaning, unless all of these have it and mean the same.
+pub(super) fn method_parameters(shown: &[&'static MethodInfo]) -> Vec<Arg> {
+    parameter_names().into_iter().map(|name| method_parameter(name, shown)).collect()
 }
 
-fn method_parameter(name: &'static str) -> Arg {
-    let mut owners: Vec<(&str, &Param)> = Vec::new();
-    for method in METHODS {
-        owners.extend(method.params.iter().filter(|param| param.name == name).map(|param| (method.name, param)));
+fn method_parameter(name: &'static str, shown: &[&'static MethodInfo]) -> Arg {
+    let flag = number(name, "NUMBER").long(flag_name(name)).help_heading(METHOD);
+    let owners: Vec<(&str, &Param)> = shown.iter().flat_map(|method| owned(method, name)).collect();
+    let Some(&(_, first)) = owners.first() else {
+        let all = METHODS.iter().flat_map(|method| owned(method, name)).collect::<Vec<_>>();
+        return flag.help(sentences(&all, false)).hide_short_help(true).hide_long_help(true);
+    };
+    let alike = owners.len() == shown.len() && owners.iter().all(|(_, param)| says(param) == says(first));
+    flag.help(sentences(&owners, alike))
+}
+
+/// Meaning, unit and default.
+fn says(param: &Param) -> (&str, &str, f64) {
+    (param.meaning, param.unit, param.default)
+}
+
+fn owned(method: &'static MethodInfo, name: &str) -> Option<(&'static str, &'static Param)> {
+    method.params.iter().find(|param| param.name == name).map(|param| (method.name, param))
+}
+
+/// A sentence for each meaning; whose it is stands before it, unless all have the same.
+fn sentences(owners: &[(&str, &Param)], alike: bool) -> String {
+    let mut meanings: Vec<(Vec<&str>, &Param)> = Vec::new();
+    for &(method, param) in owners {
+        match meanings.iter_mut().find(|(_, known)| says(known) == says(param)) {
+            Some((methods, _)) => methods.push(method),
+            None => meanings.push((vec![method], param)),
+        }
     }
-    let said = |param: &Param| (param.meaning, param.unit, param.default);
-    let alike = owners.len() == METHODS.len() && owners.iter().all(|(_, param)| said(param) == said(owners[0].1));
-    let shown = if alike { &owners[..1] } else { &owners[..] };
-    let sentence = |(method, param): &(&str, &Param)| {
-        let whose = if alike { String::new() } else { format!("{method}: ") };
+    let sentence = |(methods, param): &(Vec<&str>, &Param)| {
+        let whose = if alike { String::new() } else { format!("{}: ", methods.join(", ")) };
         format!("{whose}{} [{}, default {}]", param.meaning, param.unit, param.default)
     };
-    let help: Vec<String> = shown.iter().map(sentence).collect();
-    number(name, "NUMBER").long(flag_name(name)).help(help.join(" ")).help_heading("Method parameters")
+    meanings.iter().map(sentence).collect::<Vec<_>>().join(" ")
 }
 
 /// The noise as a file, for methods that have the parameters for it.
 pub(super) fn noise_table() -> Arg {
     path("noise-table", "FILE")
         .help("The noise of depth as CSV, by increasing range: lines of range,standard deviation in metres")
-        .help_heading("Method parameters")
         .conflicts_with_all(["noise", "noise-growth"])
 }
 
@@ -208,6 +262,13 @@ pub(super) fn count(id: &'static str, value: &'static str) -> Arg {
     })
 }
 
+/// A flag that takes a number of pixels, from 0.
+pub(super) fn pixels(id: &'static str) -> Arg {
+    Arg::new(id).long(id).value_name("PIXELS").value_parser(|text: &str| {
+        text.parse::<usize>().map_err(|_| "accepted: a whole number of pixels from 0".to_string())
+    })
+}
+
 /// A flag that takes a pixel.
 pub(super) fn pixel(id: &'static str) -> Arg {
     Arg::new(id).long(id).value_name("U,V").value_parser(|text: &str| {
@@ -250,7 +311,7 @@ fn size(text: &str) -> Result<(usize, usize), String> {
     parsed.ok_or_else(|| "accepted: columns and rows, such as 640x480".to_string())
 }
 
-fn with_long_name(arg: Arg) -> Arg {
+fn with_name_and_heading(arg: Arg) -> Arg {
     let id = arg.get_id().to_string();
-    arg.long(id)
+    arg.help_heading(help::heading(&id)).long(id)
 }

@@ -60,11 +60,10 @@ pub(super) fn compare_command() -> clap::Command {
     let input = Arg::new("input").value_name("INPUT").required(true).value_parser(value_parser!(OsString));
     clap::Command::new("compare")
         .about("Runs several methods on one map: a table, and a picture of all side by side")
-        .after_help(EXIT_CODES)
         .arg(input.help("A file, - for standard input, or scene:SPEC for a synthetic scene, which knows its truth"))
         .args(flags::reading())
         .arg(methods_flag(METHODS.iter().map(|method| method.name)))
-        .args(flags::method_parameters())
+        .args(flags::method_parameters(METHODS))
         .args([
             flags::path("picture", "FILE").help("Write the picture of all side by side (.png)"),
             flags::path("truth", "FILE")
@@ -77,8 +76,10 @@ pub(super) fn compare_command() -> clap::Command {
 
 pub(super) fn eval_command() -> clap::Command {
     clap::Command::new("eval")
-        .about("Runs methods over sets of maps and writes a report; started again, it goes on where it was interrupted")
-        .after_help(EXIT_CODES)
+        .about("Runs methods over sets of maps and writes a report")
+        .long_about(
+            "Runs methods over sets of maps and writes a report; started again, it goes on where it was interrupted",
+        )
         .args([
             Arg::new("datasets").value_name("SET").required(true).num_args(1..).help(
                 "A set in the folder of sets, NAME=DIR, or scene:SPEC (seed=1-20 for twenty seeds); \
@@ -92,12 +93,12 @@ pub(super) fn eval_command() -> clap::Command {
             flags::path("data", "DIR").help("Folder of sets"),
         ])
         .args(report_flags())
-        .args(flags::method_parameters())
+        .args(flags::method_parameters(METHODS))
 }
 
 pub(super) fn paper_command() -> clap::Command {
     clap::Command::new("paper")
-        .about("Does what the paper did: its maps, parameters and figures, its claims, and what its measures hide")
+        .about("Repeats the paper's experiments, and shows what its measures hide")
         .after_help(format!(
             "Maps that are not in DIR are replaced by synthetic ones, and the report says which. Without --data a checkout of \
              this project looks into shared/data beside it.\n\n{EXIT_CODES}"

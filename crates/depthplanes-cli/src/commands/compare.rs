@@ -27,7 +27,7 @@ struct Made {
 
 pub(super) fn run(wanted: &Compare, out: &mut dyn Write) -> Outcome {
     let recipes = Recipe::several(&wanted.methods, &wanted.parameters, wanted.threads)?;
-    let inputs = inputs::expand(std::slice::from_ref(&wanted.input))?;
+    let inputs = inputs::expand(std::slice::from_ref(&wanted.input), false)?;
     let [input] = &inputs[..] else {
         return Err(Failure::request(format!("{}: {} maps; compare takes one", wanted.input.display(), inputs.len())));
     };

@@ -1,4 +1,4 @@
-//! `depthplanes demo`: a made-up scene through the whole pipeline, into files to look at.
+//! `depthplanes demo`: a synthetic scene through the whole pipeline, into files to look at.
 
 use crate::failure::Outcome;
 use crate::folders::make_folder;

@@ -19,7 +19,7 @@ use std::io::Write;
 
 pub(super) fn run(wanted: &Explain, out: &mut dyn Write) -> Outcome {
     let recipe = Recipe::new(wanted.method, &wanted.parameters, 1)?;
-    let input = only(inputs::expand(std::slice::from_ref(&wanted.input))?)?;
+    let input = only(inputs::expand(std::slice::from_ref(&wanted.input), false)?)?;
     let mut options = load::options(&wanted.reading)?;
     options.noise = wanted.noise_table.as_ref().map(read_noise_table).transpose()?.map(SensorNoise::Table);
     let name = input.name();

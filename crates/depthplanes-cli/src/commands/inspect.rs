@@ -1,13 +1,13 @@
 //! `depthplanes inspect`: what is in a file, and how it could be read.
 
-use crate::args::Reading;
+use super::next;
+use crate::args::{Inputs, Reading};
 use crate::failure::{Failure, Outcome};
 use crate::terminal::plain;
 use crate::{inputs, load};
 use depthplanes_io::inspect::{Summary, summary};
 use depthplanes_io::{Frame, ReadOptions};
 use serde_json::json;
-use std::ffi::OsString;
 use std::io::Write;
 
 /// Bars of the histogram.
@@ -15,14 +15,14 @@ const BARS: usize = 16;
 /// Longest bar, characters.
 const BAR_WIDTH: usize = 40;
 
-pub(super) fn run(words: &[OsString], reading: &Reading, as_json: bool, out: &mut dyn Write) -> Outcome {
-    let inputs = inputs::expand(words)?;
+pub(super) fn run(wanted: &Inputs, reading: &Reading, as_json: bool, out: &mut dyn Write) -> Outcome {
+    let inputs = inputs::expand(&wanted.words, wanted.recursive)?;
     let options = load::options(reading)?;
     let mut failed = 0;
     for input in &inputs {
         match look(input, &options).map_err(|failure| failure.of_input(&input.name())) {
             Ok((_, seen)) if as_json => writeln!(out, "{}", record(&input.name(), &seen))?,
-            Ok((frame, seen)) => out.write_all(readable(&input.name(), &frame, &seen).as_bytes())?,
+            Ok((frame, seen)) => out.write_all(readable(&input.name(), &frame, &seen, reading).as_bytes())?,
             Err(failure) if inputs.len() == 1 => return Err(failure),
             Err(failure) => {
                 out.flush()?;
@@ -64,7 +64,7 @@ fn record(name: &str, seen: &Summary) -> serde_json::Value {
     })
 }
 
-fn readable(name: &str, frame: &Frame, seen: &Summary) -> String {
+fn readable(name: &str, frame: &Frame, seen: &Summary, reading: &Reading) -> String {
     let mut text = format!("{}\n", plain(name));
     let mut line = |what: &str, value: String| text += &format!("  {what:<10} {value}\n");
     line("map", format!("{} x {}, {}, format {}", seen.width, seen.height, seen.pixel_type, seen.format));
@@ -85,6 +85,9 @@ fn readable(name: &str, frame: &Frame, seen: &Summary) -> String {
     text += &histogram(seen);
     for warning in &seen.warnings {
         text += &format!("  note: {}\n", plain(warning));
+    }
+    for (i, line) in next::lines(name, frame, seen, reading).iter().enumerate() {
+        text += &format!("  {:<10} {line}\n", if i == 0 { "type next" } else { "" });
     }
     text + "\n"
 }

@@ -67,7 +67,7 @@ pub(super) fn datasets(out: &mut dyn Write) -> Outcome {
     rows.push(row([
         "scene:SPEC",
         "-",
-        "Made-up scenes with exact truth; seed=1-20 makes twenty.",
+        "Synthetic scenes with exact truth; seed=1-20 makes twenty.",
         "nothing: they are made",
     ]));
     print(&rows, out)

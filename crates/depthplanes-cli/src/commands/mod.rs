@@ -8,6 +8,7 @@ mod explain;
 mod inspect;
 mod lists;
 mod man;
+mod next;
 mod noise;
 mod score;
 

@@ -3,7 +3,7 @@
 //! In: maps, as `detect` takes them. Out: the estimate for each and for all together, as a table or as JSON, and the
 //! flags that hand it to `detect`.
 
-use crate::args::Reading;
+use crate::args::{Inputs, Reading};
 use crate::failure::{Failure, Outcome};
 use crate::inputs::Input;
 use crate::show::{length, significant};
@@ -13,14 +13,13 @@ use depthplanes::Measure;
 use depthplanes::noise::{Estimate, Estimator, SensorNoise};
 use depthplanes_io::ReadOptions;
 use serde_json::{Value, json};
-use std::ffi::OsString;
 use std::io::Write;
 
 /// Ranges that the standard deviation is told at, metres.
 const RANGES_M: [f64; 4] = [1.0, 2.0, 3.0, 4.0];
 
-pub(super) fn run(words: &[OsString], reading: &Reading, as_json: bool, out: &mut dyn Write) -> Outcome {
-    let inputs = inputs::expand(words)?;
+pub(super) fn run(wanted: &Inputs, reading: &Reading, as_json: bool, out: &mut dyn Write) -> Outcome {
+    let inputs = inputs::expand(&wanted.words, wanted.recursive)?;
     let options = load::options(reading)?;
     let mut together = Estimator::default();
     let mut found = Vec::new();

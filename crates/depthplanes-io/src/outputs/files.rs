@@ -30,7 +30,16 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
 }
 
 fn write_together(files: &[(&Path, &[u8])]) -> Result<(), OutputError> {
-    let staged = files.iter().map(|(path, bytes)| Staged::new(path, bytes)).collect::<Result<Vec<_>, _>>()?;
+    let stage = |(path, bytes): &(&Path, &[u8])| {
+        let mut staged = Staged::begin(path)?;
+        staged.write(bytes)?;
+        Ok(staged)
+    };
+    commit(files.iter().map(stage).collect::<Result<_, OutputError>>()?)
+}
+
+/// Gives files their names, when all of them are on the disk.
+pub(super) fn commit(staged: Vec<Staged>) -> Result<(), OutputError> {
     staged.iter().try_for_each(Staged::sync)?;
     let folders: BTreeSet<PathBuf> = staged.iter().filter_map(Staged::folder).collect();
     staged.into_iter().try_for_each(Staged::commit)?;

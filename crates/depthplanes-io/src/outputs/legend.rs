@@ -1,9 +1,10 @@
 //! The legend: a column beside the picture, and small numbers on the planes it names.
 
 use super::colour::colour;
+use super::depth::depth_m;
 use super::font;
 use super::picture::Picture;
-use depthplanes::{Detection, Plane};
+use depthplanes::{Detection, Measure, Plane};
 
 const PAPER: [u8; 3] = [38, 38, 44];
 const INK: [u8; 3] = [232, 232, 232];
@@ -14,41 +15,45 @@ const TALL: usize = 360;
 const FEWEST_ROWS: usize = 6;
 
 /// The picture with the legend at its right.
-pub(super) fn beside(picture: &Picture, detection: &Detection) -> Picture {
-    let layout = Layout::of(picture.height, detection);
+pub(super) fn beside(picture: &Picture, detection: &Detection, measure: Measure) -> Picture {
+    let layout = Layout::of(picture.height, detection, measure);
     let mut whole = Picture::filled(picture.width + layout.width, picture.height.max(layout.height), PAPER);
     whole.paste(picture, [0, 0]);
-    layout.draw(&mut whole, picture.width, detection);
+    layout.draw(&mut whole, picture.width);
     whole
 }
 
-/// What a row says of a plane: its label, its pixels, and its distance where that is known.
+/// The columns: label, pixels, depth at the middle and distance of the plane where these are known.
+const HEADING: [&str; COLUMNS] = ["plane", "pixels", "depth", "distance"];
+const COLUMNS: usize = 4;
+
+/// What a row says of a plane; the first row is the heading.
 struct Row {
     swatch: Option<[u8; 3]>,
-    cells: [String; 3],
+    cells: [String; COLUMNS],
 }
 
 struct Layout {
     rows: Vec<Row>,
-    columns: [usize; 3],
+    columns: [usize; COLUMNS],
     scale: usize,
     width: usize,
     height: usize,
 }
 
 impl Layout {
-    fn of(picture_height: usize, detection: &Detection) -> Layout {
+    fn of(picture_height: usize, detection: &Detection, measure: Measure) -> Layout {
         let scale = letter_scale(picture_height);
-        let rows = rows(rows_that_fit(picture_height, scale), detection);
+        let rows = rows(planes_that_fit(picture_height, scale), detection, measure);
         let widest = |column: usize| rows.iter().map(|row| font::width(&row.cells[column], scale)).max().unwrap_or(0);
-        let columns = [widest(0), widest(1), widest(2)];
+        let columns = std::array::from_fn(widest);
         let gap = |column: &usize| if *column == 0 { 0 } else { column + 2 * font::ADVANCE * scale };
         let width = margin(scale) + swatch_side(scale) + margin(scale) + columns.iter().map(gap).sum::<usize>();
         let height = 2 * margin(scale) + rows.len() * row_height(scale);
         Layout { rows, columns, scale, width, height }
     }
 
-    fn draw(&self, whole: &mut Picture, left: usize, detection: &Detection) {
+    fn draw(&self, whole: &mut Picture, left: usize) {
         let scale = self.scale;
         for (i, row) in self.rows.iter().enumerate() {
             let top = margin(scale) + i * row_height(scale);
@@ -56,9 +61,9 @@ impl Layout {
                 whole.fill([left + margin(scale), top], [swatch_side(scale); 2], swatch);
             }
             let mut u = left + margin(scale) + swatch_side(scale) + margin(scale);
-            for (column, text) in row.cells.iter().enumerate() {
+            for (column, text) in row.cells.iter().enumerate().filter(|(column, _)| self.columns[*column] > 0) {
                 let start = u + self.columns[column] - font::width(text, scale).min(self.columns[column]);
-                let ink = if column == 0 && i < detection.planes.len() { INK } else { FAINT };
+                let ink = if column == 0 && row.swatch.is_some() { INK } else { FAINT };
                 font::write(whole, [start, top + scale], scale, ink, text);
                 u += self.columns[column] + 2 * font::ADVANCE * scale;
             }
@@ -82,8 +87,10 @@ fn row_height(scale: usize) -> usize {
     (font::HEIGHT + 5) * scale
 }
 
-fn rows_that_fit(picture_height: usize, scale: usize) -> usize {
-    (picture_height.saturating_sub(2 * margin(scale)) / row_height(scale)).max(FEWEST_ROWS)
+/// Rows below the heading.
+fn planes_that_fit(picture_height: usize, scale: usize) -> usize {
+    let rows = picture_height.saturating_sub(2 * margin(scale)) / row_height(scale);
+    rows.saturating_sub(1).max(FEWEST_ROWS)
 }
 
 /// How many planes have a row; where not all fit, the last row counts the others.
@@ -92,31 +99,39 @@ fn planes_named(fitting: usize, detection: &Detection) -> usize {
     if planes > fitting { fitting - 1 } else { planes }
 }
 
-fn rows(fitting: usize, detection: &Detection) -> Vec<Row> {
+fn rows(fitting: usize, detection: &Detection, measure: Measure) -> Vec<Row> {
     let planes = &detection.planes;
     let named = planes_named(fitting, detection);
-    let mut rows: Vec<Row> = planes[..named].iter().map(row).collect();
-    if named < planes.len() {
-        let more = format!("+{} more", planes.len() - named);
-        rows.push(Row { swatch: None, cells: [String::new(), more, String::new()] });
-    }
+    let told = |text: String| Row { swatch: None, cells: [String::new(), text, String::new(), String::new()] };
     if planes.is_empty() {
-        rows.push(Row { swatch: None, cells: [String::new(), "no planes".into(), String::new()] });
+        return vec![told("no planes".into())];
+    }
+    let mut rows: Vec<Row> = planes[..named].iter().map(|plane| row(plane, measure)).collect();
+    // A column of which nothing is known has no heading.
+    let heads = |column: usize| column < 2 || rows.iter().any(|row| !row.cells[column].is_empty());
+    let heading = std::array::from_fn(|column| if heads(column) { HEADING[column].into() } else { String::new() });
+    rows.insert(0, Row { swatch: None, cells: heading });
+    if named < planes.len() {
+        rows.push(told(format!("+{} more", planes.len() - named)));
     }
     rows
 }
 
-fn row(plane: &Plane) -> Row {
-    let distance = plane.metric.as_ref().map(|metric| format!("{:.2} m", metric.plane.distance)).unwrap_or_default();
-    let cells = [plane.label.to_string(), format!("{} px", plane.pixel_count), distance];
-    Row { swatch: Some(colour(plane.label)), cells }
+fn row(plane: &Plane, measure: Measure) -> Row {
+    let metres = |length: Option<f64>| length.map(|metres| format!("{metres:.2} m")).unwrap_or_default();
+    let distance = plane.metric.map(|metric| metric.plane.distance);
+    let depth = metres(depth_m(plane, measure));
+    Row {
+        swatch: Some(colour(plane.label)),
+        cells: [plane.label.to_string(), plane.pixel_count.to_string(), depth, metres(distance)],
+    }
 }
 
 /// Writes the labels that the legend names onto their planes, where there is room.
 pub(super) fn number_planes(picture: &mut Picture, detection: &Detection) {
     let scale = letter_scale(picture.height);
-    let named = planes_named(rows_that_fit(picture.height, scale), detection);
-    let anchors = anchors(detection, named);
+    let named = planes_named(planes_that_fit(picture.height, scale), detection);
+    let anchors = anchors(detection, named, scale);
     let mut written: Vec<Area> = Vec::new();
     for (plane, anchor) in detection.planes[..named].iter().zip(anchors) {
         let text = plane.label.to_string();
@@ -165,20 +180,36 @@ fn halo(picture: &mut Picture, [u, v]: [usize; 2], scale: usize, text: &str) {
     }
 }
 
-/// For each of the first planes, its pixel nearest to its centroid.
-fn anchors(detection: &Detection, named: usize) -> Vec<[usize; 2]> {
-    let mut best = vec![(f64::INFINITY, [0, 0]); named];
+/// For each of the first planes, its pixel nearest to its centroid where the number stands on the plane alone; if there is
+/// none, its pixel nearest to the centroid.
+fn anchors(detection: &Detection, named: usize, scale: usize) -> Vec<[usize; 2]> {
+    let mut best = vec![(true, f64::INFINITY, [0, 0]); named];
     for (at, &label) in detection.labels.iter().enumerate() {
         if label == 0 || usize::from(label) > named {
             continue;
         }
-        let plane = usize::from(label) - 1;
+        let best = &mut best[usize::from(label) - 1];
         let pixel = [at % detection.width, at / detection.width];
-        let [u, v] = detection.planes[plane].centroid;
+        let [u, v] = detection.planes[usize::from(label) - 1].centroid;
         let distance = (pixel[0] as f64 - u).powi(2) + (pixel[1] as f64 - v).powi(2);
-        if distance < best[plane].0 {
-            best[plane] = (distance, pixel);
+        if (false, distance) >= (best.0, best.1) {
+            continue;
+        }
+        let found = (!has_room(detection, pixel, label, scale), distance, pixel);
+        if (found.0, found.1) < (best.0, best.1) {
+            *best = found;
         }
     }
-    best.into_iter().map(|(_, pixel)| pixel).collect()
+    best.into_iter().map(|(_, _, pixel)| pixel).collect()
+}
+
+/// Whether corners and sides of a number with that pixel in its middle lie on the plane.
+fn has_room(detection: &Detection, [u, v]: [usize; 2], label: u16, scale: usize) -> bool {
+    let half = [font::width(&label.to_string(), scale) / 2 + scale, (font::HEIGHT / 2 + 1) * scale];
+    let holds = |u: Option<usize>, v: Option<usize>| {
+        let inside = u.zip(v).filter(|&(u, v)| u < detection.width && v < detection.height);
+        inside.is_some_and(|(u, v)| detection.labels[v * detection.width + u] == label)
+    };
+    let places = |at: usize, half: usize| [at.checked_sub(half), Some(at), Some(at + half)];
+    places(u, half[0]).into_iter().all(|u| places(v, half[1]).into_iter().all(|v| holds(u, v)))
 }

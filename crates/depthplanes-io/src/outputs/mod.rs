@@ -7,6 +7,7 @@
 mod cloud;
 mod colour;
 mod curved;
+mod depth;
 mod destination;
 mod error;
 mod files;
@@ -25,10 +26,12 @@ mod planes;
 mod record;
 mod shade;
 mod staged;
+mod table;
 mod times;
 mod tinted;
 
 pub use colour::colour;
+pub use depth::depth_m;
 pub use error::OutputError;
 pub use files::{check_folder, check_paths, write_all, write_file};
 pub use labels::{npy as labels_npy, png as labels_png};
@@ -40,6 +43,7 @@ pub use overlay::overlay_png;
 pub use picture::grey16_png;
 pub use planes::{CSV_COLUMNS, document as json_document, line as json_line};
 pub use record::SCHEMA;
+pub use table::{TableFile, TableForm};
 pub use times::{Spread, Times};
 pub use tinted::{Tile, side_by_side, tinted_png};
 

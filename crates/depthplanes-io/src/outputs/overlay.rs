@@ -14,7 +14,7 @@ use depthplanes::{AnyView, Detection, Sensor};
 
 pub(super) const OUTPUT: Output = Output {
     name: "overlay",
-    about: "picture: the map in grey, each plane in its colour; with --curved, curved surfaces hatched",
+    about: "picture of the map in grey and each plane in its colour; with --curved, curved surfaces hatched",
     file: "overlay.png",
     needs_camera: false,
     needs_curved: false,
@@ -58,7 +58,7 @@ fn picture(report: &Report<'_>) -> Result<Picture, OutputError> {
     let mut picture = tinted(frame.view()?, &frame.sensor, detection, *outlines);
     if report.legend {
         legend::number_planes(&mut picture, detection);
-        picture = legend::beside(&picture, detection);
+        picture = legend::beside(&picture, detection, frame.sensor.measure);
     }
     Ok(picture)
 }

@@ -66,8 +66,18 @@ pub fn document(report: &Report<'_>) -> String {
 }
 
 fn csv(report: &Report<'_>) -> String {
+    csv_head() + &csv_rows(report)
+}
+
+/// The line of the columns' names.
+pub(super) fn csv_head() -> String {
+    CSV_COLUMNS.join(",") + "\n"
+}
+
+/// A line for each plane.
+pub(super) fn csv_rows(report: &Report<'_>) -> String {
     let source = quoted(report.source);
-    let mut text = CSV_COLUMNS.join(",") + "\n";
+    let mut text = String::new();
     for plane in &report.detection.planes {
         let numbers: Vec<String> = numbers(plane).iter().map(number).collect();
         // Writing to a string never fails.

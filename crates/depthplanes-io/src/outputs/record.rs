@@ -42,6 +42,8 @@ pub(super) struct FrameRecord<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     outline_tolerance_px: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    outline_min_hole_px: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     time_ms: Option<Map<String, Value>>,
     planes: Vec<PlaneRecord>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -147,6 +149,7 @@ impl<'a> From<&Report<'a>> for FrameRecord<'a> {
             warnings: frame.warnings.iter().chain(report.notes).map(String::as_str).collect(),
             merge_coplanar: report.coplanar.map(CoplanarRecord::from),
             outline_tolerance_px: report.outlines.map(|outlines| outlines.tolerance_px()),
+            outline_min_hole_px: report.outlines.map(|outlines| outlines.min_hole_px()).filter(|&pixels| pixels > 0),
             time_ms: report.times.map(times),
             planes: detection.planes.iter().map(|plane| PlaneRecord::with_all(plane, report)).collect(),
             curved: detection.curved.as_ref().map(|curved| curved.regions.iter().map(CurvedRecord::from).collect()),

@@ -15,36 +15,42 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A file's bytes beside their target. Dropped before [`Staged::commit`], it leaves nothing.
+#[derive(Debug)]
 pub(super) struct Staged {
-    /// The hidden file, locked while it is open; none once it has its name, and for streams.
-    hidden: Option<(File, PathBuf)>,
+    /// What is written into; a hidden file is locked while it is open.
+    file: File,
+    /// The hidden file; none once it has its name, and for streams.
+    hidden: Option<PathBuf>,
     target: PathBuf,
 }
 
 impl Staged {
-    /// Writes the bytes beside their target; into it, if it is a stream.
-    pub(super) fn new(path: &Path, bytes: &[u8]) -> Result<Self, OutputError> {
+    /// An empty file beside the target; the target itself, if it is a stream.
+    pub(super) fn begin(path: &Path) -> Result<Self, OutputError> {
         let failed = |source| OutputError::Write { path: path.to_path_buf(), source };
-        let target = match destination(path)? {
-            Destination::File(target) => target,
-            Destination::Stream => {
-                let mut stream = OpenOptions::new().write(true).truncate(true).open(path).map_err(failed)?;
-                stream.write_all(bytes).map_err(failed)?;
-                return Ok(Staged { hidden: None, target: path.to_path_buf() });
+        match destination(path)? {
+            Destination::File(target) => {
+                let (file, hidden) = create_beside(&target).map_err(failed)?;
+                Ok(Staged { file, hidden: Some(hidden), target })
             }
-        };
-        let hidden = create_beside(&target).map_err(failed)?;
-        let mut staged = Staged { hidden: Some(hidden), target };
-        if let Some((file, _)) = &mut staged.hidden {
-            file.write_all(bytes).map_err(failed)?;
+            Destination::Stream => {
+                let file = OpenOptions::new().write(true).truncate(true).open(path).map_err(failed)?;
+                Ok(Staged { file, hidden: None, target: path.to_path_buf() })
+            }
         }
-        Ok(staged)
+    }
+
+    /// Adds bytes.
+    pub(super) fn write(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
+        self.file.write_all(bytes).map_err(|source| OutputError::Write { path: self.target.clone(), source })
     }
 
     /// Waits until the bytes are on the disk.
     pub(super) fn sync(&self) -> Result<(), OutputError> {
-        let Some((file, _)) = &self.hidden else { return Ok(()) };
-        match file.sync_all() {
+        if self.hidden.is_none() {
+            return Ok(());
+        }
+        match self.file.sync_all() {
             // A file system that has no disk behind it.
             Err(error) if matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => Ok(()),
             synced => synced.map_err(|source| OutputError::Write { path: self.target.clone(), source }),
@@ -58,7 +64,7 @@ impl Staged {
 
     /// Gives the file its name.
     pub(super) fn commit(mut self) -> Result<(), OutputError> {
-        if let Some((_, hidden)) = &self.hidden {
+        if let Some(hidden) = &self.hidden {
             let failed = |source| OutputError::Write { path: self.target.clone(), source };
             fs::rename(hidden, &self.target).map_err(failed)?;
             self.hidden = None;
@@ -69,7 +75,7 @@ impl Staged {
 
 impl Drop for Staged {
     fn drop(&mut self) {
-        if let Some((_, hidden)) = &self.hidden {
+        if let Some(hidden) = &self.hidden {
             // Nothing more can be done about a file that cannot be removed.
             let _ = fs::remove_file(hidden);
         }

@@ -20,7 +20,10 @@ pub(crate) struct Probe {
 impl Probe {
     /// About `most` pixels of a map, or all of them if it has no more.
     pub(crate) fn of(frame: &Frame, most: usize) -> Result<Probe> {
-        let stride = ((frame.width * frame.height).div_ceil(most)) | 1; // Odd, so as not to stay in a few columns.
+        let least = (frame.width * frame.height).div_ceil(most);
+        // So as not to stay in a few columns, nor to meet a ramp at multiples of a number alone.
+        let stride =
+            if least == 1 { 1 } else { (least..).find(|&step| is_coprime(step, 210 * frame.width)).unwrap_or(1) };
         let is_integer = !matches!(frame.pixels, Pixels::F32(_));
         let view: AnyView<'_> = frame.view()?;
         Ok(with_view!(view, view => Probe { is_integer, ..Probe::values(view, stride) }))
@@ -65,4 +68,11 @@ impl Probe {
         levels.dedup();
         levels
     }
+}
+
+fn is_coprime(mut a: usize, mut b: usize) -> bool {
+    while b > 0 {
+        (a, b) = (b, a % b);
+    }
+    a == 1
 }

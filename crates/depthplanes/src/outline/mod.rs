@@ -19,6 +19,7 @@
 mod chord;
 mod conflicts;
 mod corner;
+mod holes;
 mod hull;
 mod outliner;
 mod outlines;

@@ -1,5 +1,6 @@
 //! From a detection to its outlines, plane after plane.
 
+use super::holes::HoleFilter;
 use super::hull::Huller;
 use super::outlines::Outlines;
 use super::rectangle::Fitter;
@@ -37,6 +38,7 @@ pub const DEFAULT_TOLERANCE_PX: f64 = 1.5;
 #[derive(Debug)]
 pub struct Outliner {
     tracer: Tracer,
+    holes: HoleFilter,
     simplifier: Simplifier,
     huller: Huller,
     fitter: Fitter,
@@ -62,11 +64,31 @@ impl Outliner {
         }
         Ok(Outliner {
             tracer: Tracer::default(),
+            holes: HoleFilter::default(),
             simplifier: Simplifier::new(tolerance_px),
             huller: Huller::default(),
             fitter: Fitter::default(),
             outlines: Outlines { tolerance_px, ..Outlines::default() },
         })
+    }
+
+    /// Leaves out holes of fewer than `pixels` pixels, so that outlines run over them. What of the same plane stands in such
+    /// a hole is then part of the polygon around it. 0, the default, and 1 keep every hole. Hulls and rectangles do not
+    /// depend on it.
+    ///
+    /// ```
+    /// use depthplanes::{DepthView, Detector, Ngaf, outline::Outliner};
+    /// let depth_mm = [1000u16, 1000, 1000, 1000, 0, 1000, 1000, 1000, 1000]; // one pixel is missing
+    /// let mut detector = Detector::new(Ngaf::default().min(3))?;
+    /// let found = detector.detect(DepthView::new(&depth_mm, 3, 3)?)?;
+    /// let outlines = Outliner::default().min_hole_px(2).outline(found, None)?.clone();
+    /// assert_eq!(outlines.get(1).unwrap().polygons().next().unwrap().holes().len(), 0);
+    /// # Ok::<(), depthplanes::Error>(())
+    /// ```
+    pub fn min_hole_px(mut self, pixels: usize) -> Self {
+        self.holes.min_px = pixels;
+        self.outlines.min_hole_px = pixels;
+        self
     }
 
     /// The outline of each plane that has pixels, in order of label. `camera` is the one that the
@@ -75,9 +97,10 @@ impl Outliner {
     /// # Errors
     /// [`Error::Size`] and [`Error::Length`] if the label image is not one.
     pub fn outline(&mut self, detection: &Detection, camera: Option<&Intrinsics>) -> Result<&Outlines> {
-        let Outliner { tracer, simplifier, huller, fitter, outlines } = self;
+        let Outliner { tracer, holes, simplifier, huller, fitter, outlines } = self;
         outlines.clear(camera);
         tracer.trace(detection)?;
+        holes.filter(&mut tracer.rings, &tracer.corners);
         for rings in tracer.rings.chunk_by(|a, b| a.label == b.label) {
             simplifier.simplify(rings, &tracer.corners, &mut tracer.keep);
             let first = outlines.ends();

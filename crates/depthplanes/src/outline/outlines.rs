@@ -14,6 +14,7 @@ use std::ops::Range;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outlines {
     pub(super) tolerance_px: f64,
+    pub(super) min_hole_px: usize,
     pub(super) camera: Option<Intrinsics>,
     pub(super) corners: Vec<Corner>,
     pub(super) hulls: Vec<Corner>,
@@ -103,6 +104,11 @@ impl Outlines {
     /// How far rings may deviate from the pixels' cracks, pixels.
     pub fn tolerance_px(&self) -> f64 {
         self.tolerance_px
+    }
+
+    /// Holes of fewer pixels were left out; 0 if none were ([`super::Outliner::min_hole_px`]).
+    pub fn min_hole_px(&self) -> usize {
+        self.min_hole_px
     }
 
     /// The outlines in order of label; planes without a pixel have none.

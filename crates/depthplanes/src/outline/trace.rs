@@ -19,7 +19,7 @@ use std::ops::Range;
 pub(super) struct TracedRing {
     pub(super) label: u16,
     /// The polygon that it belongs to, counted by first pixel.
-    polygon: u32,
+    pub(super) polygon: u32,
     pub(super) is_hole: bool,
     pub(super) first: usize,
     pub(super) end: usize,
@@ -234,7 +234,7 @@ impl Path {
 }
 
 /// Twice the area of a ring; below 0 if it runs counter-clockwise on the picture.
-fn doubled_area(corners: &[Corner]) -> i64 {
+pub(super) fn doubled_area(corners: &[Corner]) -> i64 {
     let (Some(&first), Some(&last)) = (corners.first(), corners.last()) else { return 0 };
     let cross = |[ax, ay]: Corner, [bx, by]: Corner| i64::from(ax) * i64::from(by) - i64::from(bx) * i64::from(ay);
     corners.windows(2).map(|pair| cross(pair[0], pair[1])).sum::<i64>() + cross(last, first)

@@ -49,7 +49,7 @@ pub(crate) fn find(word: &str, data: Option<&Path>) -> Outcome<Vec<Item>> {
         word.split_once('=').map_or((word, None), |(name, folder)| (name, Some(PathBuf::from(folder))));
     let names = || DATASETS.iter().map(|dataset| dataset.name).collect::<Vec<_>>().join(", ");
     let dataset = DATASETS.iter().find(|dataset| dataset.name == name).ok_or_else(|| {
-        Failure::request(format!("unknown set `{name}`; there are {}, and scene:SPEC for made-up scenes", names()))
+        Failure::request(format!("unknown set `{name}`; there are {}, and scene:SPEC for synthetic scenes", names()))
     })?;
     let folder = match (folder, data) {
         (Some(folder), _) => folder,

@@ -1,4 +1,4 @@
-//! Made-up scenes with exact truth: `scene:SPEC`, of which `seed=A-B` makes one for each seed.
+//! Synthetic scenes with exact truth: `scene:SPEC`, of which `seed=A-B` makes one for each seed.
 
 use super::dataset::{Item, TruthOf};
 use crate::failure::{Failure, Outcome};

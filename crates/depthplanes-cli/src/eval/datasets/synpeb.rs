@@ -1,4 +1,4 @@
-//! SynPEB's made-up scans, as pinhole depth.
+//! SynPEB's synthetic scans, as pinhole depth.
 
 use super::dataset::{Dataset, Item};
 use super::folder::beside_labels;
@@ -7,7 +7,7 @@ use std::path::Path;
 
 pub(super) const DATASET: Dataset = Dataset {
     name: "synpeb",
-    about: "SynPEB (Schaefer et al. 2019): made-up laser scans of rooms with many planes, as pinhole depth.",
+    about: "SynPEB (Schaefer et al. 2019): synthetic laser scans of rooms with many planes, as pinhole depth.",
     folder: "gt_synpeb",
     layout: "NAME.pinhole_depth.png (16 bit, 1/5000 m, focal length 400) beside NAME.pinhole_labels.png",
     items,

@@ -1,4 +1,4 @@
-//! The paper's maps: where each file is, how it is read, and the made-up map that stands in for it.
+//! The paper's maps: where each file is, how it is read, and the synthetic map that stands in for it.
 
 use super::super::datasets::{Item, reading};
 use super::super::report::Section;
@@ -50,14 +50,14 @@ const MAPS: [Map; 11] = [
 /// Where a map comes from.
 pub(super) struct Source {
     pub(super) map: &'static Map,
-    /// None if it is made up.
+    /// None if it is synthetic.
     pub(super) file: Option<PathBuf>,
 }
 
 impl Source {
     fn name(&self) -> String {
-        let made_up = if self.file.is_none() { " (made up)" } else { "" };
-        format!("{}{made_up}", self.map.name)
+        let synthetic = if self.file.is_none() { " (synthetic)" } else { "" };
+        format!("{}{synthetic}", self.map.name)
     }
 
     fn item(&self) -> Item {
@@ -82,7 +82,7 @@ pub(super) fn folder(given: Option<&Path>) -> Outcome<Option<PathBuf>> {
         Some(folder) if folder.is_dir() => Ok(Some(folder.into())),
         Some(folder) => {
             let message =
-                "no such folder; give one that holds the paper's maps, or an empty one for made-up maps alone";
+                "no such folder; give one that holds the paper's maps, or an empty one for synthetic maps alone";
             Err(Failure::request(format!("--data {}: {message}", folder.display())))
         }
         None => {
@@ -108,18 +108,18 @@ pub(super) fn items(sources: &[Source], set: &str) -> Vec<Item> {
 /// Which maps were used.
 pub(super) fn section(sources: &[Source]) -> Section {
     let title = "Maps";
-    let made_up = sources.iter().filter(|source| source.file.is_none()).count();
-    let which = match made_up {
+    let synthetic = sources.iter().filter(|source| source.file.is_none()).count();
+    let which = match synthetic {
         0 => String::new(),
-        all if all == sources.len() => "\n\nAll maps here are made up: none of the files is at hand.".into(),
-        some => format!("\n\n{some} of the files are not at hand; made-up maps stand in for them."),
+        all if all == sources.len() => "\n\nAll maps here are synthetic: none of the files is at hand.".into(),
+        some => format!("\n\n{some} of the files are not at hand; synthetic maps stand in for them."),
     };
     let text = format!(
         "The paper's five maps of Middlebury are true disparities, of the left view, in grey levels; theta is 1 there and \
          nothing is filled (sections 3b, 3c). Its own frames of a Kinect are not public; these are others, in the units \
          of their files, with theta 2 and gaps filled by a window of 5. A plane has more than min pixels: 32, 64, 128 or \
          256 (section 3d); all methods get the same min and have their defaults otherwise. The other \
-         methods know a Kinect's nominal camera and noise for recorded frames, the camera alone for made-up ones.{which}"
+         methods know a Kinect's nominal camera and noise for recorded frames, the camera alone for synthetic ones.{which}"
     );
     let line = |source: &Source| {
         let Map { set, file, scene, .. } = source.map;

@@ -42,7 +42,7 @@ const SENSOR: Settings = Settings { theta: 2.0, window: 5.0 };
 pub(crate) fn run(wanted: &Paper, out: &mut dyn Write) -> Outcome {
     let data = maps::folder(wanted.data.as_deref())?;
     let sources = maps::sources(data.as_deref());
-    tell_made_up(&sources, data.as_deref());
+    tell_synthetic(&sources, data.as_deref());
     let trials = trials(wanted, &sources, data.as_deref())?;
     let pace = Pace { repeat: wanted.repeat, jobs: wanted.jobs };
     let all: Vec<_> =
@@ -68,14 +68,14 @@ pub(crate) fn run(wanted: &Paper, out: &mut dyn Write) -> Outcome {
 }
 
 /// A note if maps are not there.
-fn tell_made_up(sources: &[Source], data: Option<&Path>) {
-    let made_up: Vec<&str> =
+fn tell_synthetic(sources: &[Source], data: Option<&Path>) {
+    let synthetic: Vec<&str> =
         sources.iter().filter(|source| source.file.is_none()).map(|source| source.map.name).collect();
-    if !made_up.is_empty() {
+    if !synthetic.is_empty() {
         let place = data.map_or("without --data".to_string(), |data| format!("not in {}", data.display()));
         note(&format!(
-            "{place}: made-up maps stand in for {}; the report says which files are looked for",
-            made_up.join(", ")
+            "{place}: synthetic maps stand in for {}; the report says which files are looked for",
+            synthetic.join(", ")
         ));
     }
 }

@@ -17,7 +17,7 @@ const SCENES: [&str; 4] = ["planes3:", "stairs:", "curved:", "random:seed=1-2,"]
 /// Strips of a trial.
 const STRIPS: usize = 4;
 
-/// Made-up maps of a stereo pair, and those of Middlebury's maps whose planes are known, where Middlebury's are at hand.
+/// Synthetic maps of a stereo pair, and those of Middlebury's maps whose planes are known, where Middlebury's are at hand.
 pub(super) fn disparity(sources: &[Source], data: Option<&Path>) -> Outcome<Vec<Item>> {
     let mut items = scenes("sensor=disparity,size=450x375")?;
     if sources.iter().any(|source| source.map.set == MIDDLEBURY && source.file.is_some()) {
@@ -26,7 +26,7 @@ pub(super) fn disparity(sources: &[Source], data: Option<&Path>) -> Outcome<Vec<
     Ok(named(items, DISPARITY))
 }
 
-/// Made-up maps of a Kinect.
+/// Synthetic maps of a Kinect.
 pub(super) fn depth() -> Outcome<Vec<Item>> {
     Ok(named(scenes("sensor=kinect_white")?, DEPTH))
 }

@@ -11,7 +11,7 @@ use crate::util::parallel::{Rows, map_reduce};
 use std::ops::Range;
 
 /// Columns and rows of a tile. The smallest plane has to hold a few; a tile's own plane should still
-/// mean something under noise. Of 4, 5, 6 and 8, 4 was the best on ABW and on made-up rooms.
+/// mean something under noise. Of 4, 5, 6 and 8, 4 was the best on ABW and on synthetic rooms.
 pub(super) const SIDE: usize = 4;
 /// Cells that are computed at a time; a row of any size of cells has a multiple of them.
 pub(super) const LANES: usize = 8;

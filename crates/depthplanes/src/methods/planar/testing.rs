@@ -15,16 +15,16 @@ use crate::util::random::Random;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
-/// Standard deviation of a made-up pixel.
+/// Standard deviation of a synthetic pixel.
 pub(super) const SIGMA: f64 = 0.05;
 /// The inlier threshold of the tests.
 pub(super) const THRESHOLD: f64 = 4.0;
 
-/// What the made-up maps are taken with.
+/// What the synthetic maps are taken with.
 pub(super) const SENSOR: Sensor =
     Sensor { measure: Measure::Disparity, intrinsics: None, noise: None, smooth_noise: None };
 
-/// A made-up map: disparity, so that q is the value.
+/// A synthetic map: disparity, so that q is the value.
 #[derive(Clone, Debug)]
 pub(super) struct Made {
     pub(super) q: Vec<f32>,

@@ -43,7 +43,7 @@ pub(super) const BOWED_MERGE: f64 = 16.0;
 pub(super) const BOWED_EXCESS: f64 = 4.0;
 /// Largest angle at which they meet, degrees; what turns by more is an edge or a bend. Of 580 surfaces (recorded frames,
 /// mirrored, turned and cropped) 90.7 % are whole at 6, and between 8 and 12 the figures are the same within a point, while a
-/// made-up wall takes a cushion in at 10, and bends by it. Made-up ramps begin at a few degrees.
+/// synthetic wall takes a cushion in at 10, and bends by it. Synthetic ramps begin at a few degrees.
 pub(super) const BOWED_ANGLE: f64 = 8.0;
 /// Largest step between their planes in the middle of their border, in deviations of what [`STEP_NOISE`] says.
 pub(super) const BOWED_STEP: f64 = 4.0;
