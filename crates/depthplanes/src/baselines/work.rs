@@ -1,0 +1,35 @@
+//! How much a search may do.
+//!
+//! In: the pixels of a map, and what a search has looked at. Out: whether it is time to stop. The papers state no end but
+//! that nothing is left to find: with a tolerance of nothing, planes of a few pixels, or a precision as small as can be
+//! asked for, a search looks at every pixel for each of them. Ordinary searches stay far below the bound.
+
+/// Pixels that may be looked at for each pixel of a map: fifty times what the ordinary search of a recorded frame takes, and
+/// some seconds for a map of 640 x 480 pixels.
+const LOOKS: usize = 4096;
+/// The smallest maps count as this many pixels: a search draws some thousand times whatever the map's size.
+const FEWEST: usize = 4096;
+
+/// What a search may still do.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Work {
+    left: usize,
+}
+
+impl Work {
+    /// Nothing is done yet.
+    pub(super) fn new(pixels: usize) -> Self {
+        Work { left: LOOKS.saturating_mul(pixels.max(FEWEST)) }
+    }
+
+    /// Counts pixels that were looked at.
+    #[inline(always)]
+    pub(super) fn count(&mut self, looks: usize) {
+        self.left = self.left.saturating_sub(looks);
+    }
+
+    /// Whether the search has to stop with what it has found.
+    pub(super) fn is_spent(&self) -> bool {
+        self.left == 0
+    }
+}
