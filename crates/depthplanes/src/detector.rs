@@ -167,7 +167,8 @@ impl Detector {
         let joiner = self.joiner.as_mut();
         let mut job = Job { sensor: self.sensor, threads: self.threads, curved: self.curved, joiner, observer };
         let (map, method, detection) = (map.into(), &mut self.method, &mut self.detection);
-        install(self.threads, || method.0.run(map, &mut job, detection)).map_err(|error| named(error, method.info()))?;
+        install(self.threads, || method.0.run(map, &mut job, detection))
+            .map_err(|error| named(error, method.info()))?;
         Ok(&self.detection)
     }
 
@@ -208,7 +209,8 @@ fn named(error: Error, method: &MethodInfo) -> Error {
     match error {
         Error::TooManyPlanes { found, .. } => {
             let is_in_table = |name: &&str| method.params.iter().any(|param| param.name == *name);
-            let raised: Vec<String> = FEWER_PLANES.into_iter().filter(is_in_table).map(|name| format!("`{name}`")).collect();
+            let raised: Vec<String> =
+                FEWER_PLANES.into_iter().filter(is_in_table).map(|name| format!("`{name}`")).collect();
             Error::TooManyPlanes { found, raise: raised.join(" or ") }
         }
         other => other,

@@ -109,7 +109,8 @@ impl Mesh {
 
 /// Whether all corners of an outline are known in metres and can be written in single precision.
 fn is_in_reach(outline: &Outline<'_>) -> bool {
-    let is_finite = |ring: Ring<'_>| ring.points_m().is_some_and(|points| points.flatten().all(|x| (x as f32).is_finite()));
+    let is_finite =
+        |ring: Ring<'_>| ring.points_m().is_some_and(|points| points.flatten().all(|x| (x as f32).is_finite()));
     let mut rings = outline.polygons().flat_map(|polygon| std::iter::once(polygon.outer()).chain(polygon.holes()));
     rings.all(is_finite)
 }

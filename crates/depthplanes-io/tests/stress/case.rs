@@ -33,7 +33,7 @@ impl Case {
         };
         let mut values: Vec<f64> = method.params.iter().enumerate().map(value).collect();
         // Small maps have small planes.
-        if changed == 0 {
+        if changed == 0 || pick(random, 2) == 0 {
             values[method.params.iter().position(|param| param.name == "min").unwrap()] = pick(random, 30) as f64;
         }
         let explained = (pick(random, 40) == 0 && map.width * map.height <= 2000)
@@ -62,7 +62,11 @@ impl std::fmt::Display for Case {
             write!(f, " --{} {value:?}", param.name)?;
         }
         let (curved, coplanar, tolerance) = (self.curved, self.coplanar, self.outline_tolerance_px);
-        write!(f, "; curved {curved}, {coplanar:?}, outlines {tolerance:?}, explained {:?}\n  {sensor:?}", self.explained)
+        write!(
+            f,
+            "; curved {curved}, {coplanar:?}, outlines {tolerance:?}, explained {:?}\n  {sensor:?}",
+            self.explained
+        )
     }
 }
 

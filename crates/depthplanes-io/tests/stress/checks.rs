@@ -19,7 +19,16 @@ macro_rules! check {
     };
 }
 
-pub fn run(case: &Case) -> Check {
+/// How many runs were more than a refusal.
+#[derive(Debug, Default)]
+pub struct Tally {
+    pub refused: u64,
+    pub with_planes: u64,
+    pub in_metres: u64,
+    pub with_curved: u64,
+}
+
+pub fn run(case: &Case, tally: &mut Tally) -> Check {
     let detect = |detector: &mut Detector| -> Outcome<Detection> {
         Ok(match &case.map.pixels {
             Pixels::U8(pixels) => detector.detect(case.map.view(pixels))?,
@@ -47,9 +56,13 @@ pub fn run(case: &Case) -> Check {
         Ok(found) => found,
         Err(refused) => {
             check!(!refused.to_string().is_empty(), "a refusal without a message");
+            tally.refused += 1;
             return Ok(());
         }
     };
+    tally.with_planes += u64::from(!found.planes.is_empty());
+    tally.in_metres += u64::from(found.planes.iter().any(|plane| plane.metric.is_some()));
+    tally.with_curved += u64::from(found.curved.as_ref().is_some_and(|curved| !curved.regions.is_empty()));
     contract(case, &found, frame.view().map_err(|error| error.to_string())?)?;
     found.planes.iter().try_for_each(finite)?;
     found.parts.iter().try_for_each(|part| finite(&part.plane))?;
@@ -248,7 +261,8 @@ fn ply(name: &str, bytes: &[u8]) -> Check {
     let line = header.lines().find_map(|line| line.strip_prefix("element vertex ")).ok_or("no vertices")?;
     let count: usize = line.parse().map_err(|_| "no number of vertices")?;
     for vertex in bytes[start..].chunks(17).take(count) {
-        let numbers = vertex[..12].chunks(4).map(|four| f64::from(f32::from_le_bytes([four[0], four[1], four[2], four[3]])));
+        let numbers =
+            vertex[..12].chunks(4).map(|four| f64::from(f32::from_le_bytes([four[0], four[1], four[2], four[3]])));
         all_finite(name, numbers)?;
     }
     Ok(())

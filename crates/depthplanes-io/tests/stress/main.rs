@@ -13,12 +13,13 @@ mod sensors;
 mod support;
 
 use case::Case;
+use checks::Tally;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 /// Runs that the tests make.
-const RUNS: u64 = 1500;
+const RUNS: u64 = 2000;
 /// Longest time that a run of four detections and all outputs may take.
 const LIMIT: Duration = Duration::from_secs(5);
 /// A run that takes as long as this never ends; the test gives its seed and stops.
@@ -28,18 +29,19 @@ const ENDLESS: Duration = Duration::from_secs(120);
 static CURRENT: Mutex<Option<(u64, Instant)>> = Mutex::new(None);
 
 fn number(name: &str, default: u64) -> u64 {
-    std::env::var(name).ok().filter(|text| !text.is_empty()).map_or(default, |text| {
-        text.parse().unwrap_or_else(|_| panic!("{name} is `{text}`; accepted: a whole number"))
-    })
+    std::env::var(name)
+        .ok()
+        .filter(|text| !text.is_empty())
+        .map_or(default, |text| text.parse().unwrap_or_else(|_| panic!("{name} is `{text}`; accepted: a whole number")))
 }
 
 /// Makes one run; returns what is wrong with it.
-fn failure(seed: u64) -> Option<String> {
+fn failure(seed: u64, tally: &mut Tally) -> Option<String> {
     let case = Case::new(seed);
     let describe = |what: &str| format!("seed {seed}: {what}\n  {case}");
     let started = Instant::now();
     *CURRENT.lock().unwrap() = Some((seed, started));
-    let outcome = catch_unwind(AssertUnwindSafe(|| checks::run(&case)));
+    let outcome = catch_unwind(AssertUnwindSafe(|| checks::run(&case, tally)));
     let elapsed = started.elapsed();
     match outcome {
         Ok(Ok(())) if elapsed > LIMIT => Some(describe(&format!("took {:.1} s", elapsed.as_secs_f64()))),
@@ -69,9 +71,9 @@ fn random_maps_methods_cameras_and_noise_give_finite_numbers_in_time() {
     let (first, runs) = (number("STRESS_SEED", 1), number("STRESS_RUNS", RUNS));
     watch();
     let started = Instant::now();
-    let mut failures = 0u64;
+    let (mut failures, mut tally) = (0u64, Tally::default());
     for seed in first..first + runs {
-        if let Some(failure) = failure(seed) {
+        if let Some(failure) = failure(seed, &mut tally) {
             eprintln!("{failure}");
             failures += 1;
         }
@@ -81,6 +83,6 @@ fn random_maps_methods_cameras_and_noise_give_finite_numbers_in_time() {
         }
     }
     *CURRENT.lock().unwrap() = None;
-    eprintln!("{runs} runs in {:.1} s, {failures} failed", started.elapsed().as_secs_f64());
+    eprintln!("{runs} runs in {:.1} s, {failures} failed; {tally:?}", started.elapsed().as_secs_f64());
     assert_eq!(failures, 0, "runs failed; `make stress SEED=<seed> RUNS=1` repeats one");
 }

@@ -70,9 +70,8 @@ pub fn map(random: &mut Random, sensor: &Sensor) -> Map {
         _ => (low as f32) < high as f32,
     });
     let kind = ["u8", "u16", "f32"][kind];
-    let about = format!(
-        "{kind} stride {stride} {about}, {gaps}, level {level:e}, missing {missing:?}, valid {valid_range:?}"
-    );
+    let about =
+        format!("{kind} stride {stride} {about}, {gaps}, level {level:e}, missing {missing:?}, valid {valid_range:?}");
     Map { width, height, stride, pixels, missing, valid_range, about }
 }
 
@@ -87,7 +86,7 @@ fn size(random: &mut Random) -> (usize, usize) {
         20 => (100 + pick(random, 100), 100 + pick(random, 50)),
         21 if pick(random, 50) == 0 => (1000, 700),
         22..150 => (near[0], near[1]),
-        150..170 => (40 + pick(random, 60), 40 + pick(random, 40)),
+        150..230 => (40 + pick(random, 60), 40 + pick(random, 40)),
         _ => (1 + pick(random, 48), 1 + pick(random, 36)),
     }
 }
@@ -118,7 +117,7 @@ fn surface(random: &mut Random, [width, height]: [usize; 2], level: f64) -> (&'s
     let (a, b) = (steep * random.between(-0.1, 0.1), steep * random.between(-0.1, 0.1));
     let [cu, cv] = [random.uniform() * width as f64, random.uniform() * height as f64];
     let radius = random.between(2.0, 40.0);
-    match pick(random, 11) {
+    match [0, 1, 2, 3, 4, 5, 6, 6, 6, 7, 7, 8, 9, 10][pick(random, 14)] {
         0 => ("constant", vec![level; width * height]),
         1 => ("ramp", places().map(|(u, v)| level + a * u + b * v).collect()),
         2 => ("huge ramp", places().map(|(u, v)| level * (1.0 + 1e3 * (u - cu)) + 1e6 * b * v).collect()),

@@ -3,10 +3,25 @@
 use crate::case::{logarithmic, pick};
 use depthplanes::noise::{NoiseTable, SensorNoise};
 use depthplanes::scene::Random;
-use depthplanes::{Intrinsics, Measure, Sensor};
+use depthplanes::{DepthView, Detector, Intrinsics, Measure, Ngaf, Sensor};
 
-/// Any sensor; many are refused.
+/// Any sensor; one in eight may be refused.
 pub fn sensor(random: &mut Random) -> Sensor {
+    let mut made = any_sensor(random);
+    let may_be_refused = pick(random, 8) == 0;
+    while !may_be_refused && is_refused(&made) {
+        made = any_sensor(random);
+    }
+    made
+}
+
+fn is_refused(sensor: &Sensor) -> bool {
+    let pixel = [1u8];
+    let view = DepthView::new(&pixel, 1, 1).unwrap();
+    Detector::new(Ngaf::default()).unwrap().sensor(*sensor).detect(view).is_err()
+}
+
+fn any_sensor(random: &mut Random) -> Sensor {
     let sensor = Sensor::default().measure(measure(random)).intrinsics(camera(random));
     match pick(random, 4) {
         0 => sensor.noise(noise(random)).smooth_noise(noise(random)),

@@ -6,26 +6,26 @@
 
 /// Pixels that may be looked at for each pixel of a map: fifty times what the ordinary search of a recorded frame takes, and
 /// some seconds for a map of 640 x 480 pixels.
-const LOOKS: usize = 4096;
+const LOOKS: u64 = 4096;
 /// The smallest maps count as this many pixels: a search draws some thousand times whatever the map's size.
-const FEWEST: usize = 4096;
+const FEWEST: u64 = 4096;
 
 /// What a search may still do.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Work {
-    left: usize,
+    left: u64,
 }
 
 impl Work {
     /// Nothing is done yet.
     pub(super) fn new(pixels: usize) -> Self {
-        Work { left: LOOKS.saturating_mul(pixels.max(FEWEST)) }
+        Work { left: LOOKS * FEWEST.max(pixels as u64) }
     }
 
     /// Counts pixels that were looked at.
     #[inline(always)]
     pub(super) fn count(&mut self, looks: usize) {
-        self.left = self.left.saturating_sub(looks);
+        self.left = self.left.saturating_sub(looks as u64);
     }
 
     /// Whether the search has to stop with what it has found.

@@ -148,6 +148,7 @@ impl Distances {
 /// out of what numbers can hold.
 fn is_finite(metric: &MetricPlane) -> bool {
     let MetricPlane { plane, rms_m, centroid_m, covariance, .. } = metric;
-    let numbers = plane.normal.iter().chain([&plane.distance, rms_m]).chain(centroid_m).chain(covariance.iter().flatten());
+    let numbers =
+        plane.normal.iter().chain([&plane.distance, rms_m]).chain(centroid_m).chain(covariance.iter().flatten());
     numbers.into_iter().all(|number| number.is_finite())
 }
