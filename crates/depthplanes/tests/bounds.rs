@@ -1,11 +1,9 @@
 //! What is too much: searches that would not end, and numbers that cannot be given.
 
-mod naive;
-
 use depthplanes::methods::{METHODS, find};
 use depthplanes::noise::{NoiseTable, SensorNoise};
+use depthplanes::scene::Random;
 use depthplanes::{DepthView, Detector, Error, Intrinsics, Measure, Sensor};
-use naive::Random;
 use std::time::{Duration, Instant};
 
 /// A slanted wall with a box in front of it, noisy, millimetres.
@@ -14,7 +12,7 @@ fn noisy(seed: u64, [width, height]: [usize; 2]) -> Vec<u16> {
     let value = |(u, v): (usize, usize)| {
         let is_box = (width / 4..width / 2).contains(&u) && (height / 4..height / 2).contains(&v);
         let depth = if is_box { 1000 } else { 1500 + 3 * u + 2 * v };
-        (depth + random.below(40)) as u16
+        (depth + random.whole(0, 39)) as u16
     };
     (0..width * height).map(|at| (at % width, at / width)).map(value).collect()
 }
