@@ -13,7 +13,8 @@ type Check = Result<(), String>;
 
 macro_rules! check {
     ($holds:expr, $($what:tt)+) => {
-        if !$holds {
+        let holds: bool = $holds;
+        if !holds {
             return Err(format!($($what)+));
         }
     };

@@ -64,7 +64,7 @@ pub fn map(random: &mut Random, sensor: &Sensor) -> Map {
         _ => Pixels::F32(strided.iter().map(|&value| value as f32).collect()),
     };
     let missing = (pick(random, 4) == 0).then(|| values[pick(random, values.len())].round().clamp(-1e30, 1e30));
-    let valid_range = (pick(random, 6) == 0).then(|| (level * 0.5, level * 1.5)).filter(|&(low, high)| match kind {
+    let valid_range = (pick(random, 6) == 0).then_some((level * 0.5, level * 1.5)).filter(|&(low, high)| match kind {
         0 => u8::from_f64(low) < u8::from_f64(high),
         1 => u16::from_f64(low) < u16::from_f64(high),
         _ => (low as f32) < high as f32,

@@ -2,10 +2,10 @@
 //!
 //! In: the pixels of a map, and what a search has looked at. Out: whether it is time to stop. The papers state no end but
 //! that nothing is left to find: with a tolerance of nothing, planes of a few pixels, or a precision as small as can be
-//! asked for, a search looks at every pixel for each of them. Ordinary searches stay far below the bound.
+//! asked for, a search looks at every pixel for each of them. The searches of recorded frames at defaults stay below the
+//! bound: their labels are those of searches without it.
 
-/// Pixels that may be looked at for each pixel of a map: fifty times what the ordinary search of a recorded frame takes, and
-/// some seconds for a map of 640 x 480 pixels.
+/// Pixels that may be looked at for each pixel of a map: a few seconds for a map of 640 x 480 pixels.
 const LOOKS: u64 = 4096;
 /// The smallest maps count as this many pixels: a search draws some thousand times whatever the map's size.
 const FEWEST: u64 = 4096;
