@@ -24,6 +24,9 @@ REPEAT ?= 3
 MORE_SETS = $(call set,real-presets,gt_real) $(call set,7scenes,video_7scenes) $(call set,tsdf,video_tsdf_fusion) \
 	$(call set,kinect,kinect_v1)
 METHODS ?= planar,ngaf,ransac,ppdfdm,fpdidm,hough,normals,mdl,gradient
+# Random maps that `make stress` makes, and the seed of the first.
+RUNS ?= 100000
+SEED ?= 1
 # Name of this machine's folder of benchmark records.
 MACHINE ?= $(shell scripts/machine)
 
@@ -38,7 +41,7 @@ WASM := --manifest-path tests/wasm/Cargo.toml
 say = @printf '\n== %s\n' '$(1)'
 
 .NOTPARALLEL:
-.PHONY: help demo dist try-deb deny test lint fmt format clippy rust-tests rustdoc packages package targets oracles bench bench-planar ablate tables peers results golden fuzz clean
+.PHONY: help demo dist try-deb deny test lint fmt format clippy rust-tests rustdoc packages package targets oracles bench bench-planar ablate tables peers results golden stress fuzz clean
 
 help: ## List the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -139,6 +142,9 @@ results: ## Write docs/results.md and the README's table of methods anew: METHOD
 golden: ## Write golden files, the outputs shown in the docs and their pictures anew; look at the difference
 	DEPTHPLANES_GOLDEN=update $(CARGO) test --workspace
 	git status --short
+
+stress: ## Run RUNS (100000) random maps through random methods, parameters and cameras, from SEED (1) on
+	STRESS_RUNS=$(RUNS) STRESS_SEED=$(SEED) $(CARGO) test --package depthplanes-io --test stress -- --nocapture
 
 fuzz: $(CARGO_FUZZ) ## Fuzz every reader for FUZZ_SECONDS each (30)
 	@for target in fuzz/fuzz_targets/*.rs; do \

@@ -9,6 +9,7 @@
 //! affine in inverse depth (paper, eq. 6), so the same holds there.
 
 use crate::error::{Error, Result};
+use crate::limits::{FOCAL_PX, MAX_OFFSET_PER_M, MAX_PRINCIPAL_POINT_PX, METRES_PER_UNIT, SLOPE_PER_M};
 
 /// Pinhole intrinsics in pixels. `fy` (and `fx`) may be negative: ICL-NUIM's image y axis points up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,17 +29,16 @@ impl Intrinsics {
     /// Checked intrinsics.
     ///
     /// # Errors
-    /// [`Error::Camera`] unless all four are finite and both focal lengths differ from 0.
+    /// [`Error::Camera`] unless both focal lengths lie within [`FOCAL_PX`], but for their sign, and the principal point is
+    /// no farther than [`MAX_PRINCIPAL_POINT_PX`] along either axis.
     pub fn new(fx: f64, fy: f64, cx: f64, cy: f64) -> Result<Self> {
         for (name, given) in [("fx", fx), ("fy", fy)] {
-            if !given.is_finite() || given == 0.0 {
-                return Err(Error::Camera { name, given, accepted: "a finite focal length in pixels, not 0" });
-            }
+            let accepted = "a focal length in pixels, from 0.001 to 1e9 or from -1e9 to -0.001";
+            within(name, given, FOCAL_PX.contains(&given.abs()), accepted)?;
         }
         for (name, given) in [("cx", cx), ("cy", cy)] {
-            if !given.is_finite() {
-                return Err(Error::Camera { name, given, accepted: "a finite pixel coordinate" });
-            }
+            let accepted = "a pixel coordinate from -1e9 to 1e9";
+            within(name, given, given.abs() <= MAX_PRINCIPAL_POINT_PX, accepted)?;
         }
         Ok(Intrinsics { fx, fy, cx, cy })
     }
@@ -95,10 +95,9 @@ impl Measure {
     /// Depth with a unit.
     ///
     /// # Errors
-    /// [`Error::Camera`] unless `metres` per unit is finite and positive.
+    /// [`Error::Camera`] unless `metres` per unit lies within [`METRES_PER_UNIT`].
     pub fn depth(metres: f64) -> Result<Self> {
-        positive("metres per map unit", metres)?;
-        Ok(Measure::Depth { metres })
+        Measure::Depth { metres }.checked()
     }
 
     /// Disparity of a rectified pair (paper, eq. 6: `z = f T / |xL - xR|`; with the Middlebury
@@ -107,7 +106,8 @@ impl Measure {
     /// principal points in pixels (0 for most rigs).
     ///
     /// # Errors
-    /// [`Error::Camera`] unless the first three are finite and positive and the last is finite.
+    /// [`Error::Camera`] unless the first three are finite and positive and the last is finite, and the inverse depth that
+    /// they give has a slope within [`SLOPE_PER_M`] and an offset of at most [`MAX_OFFSET_PER_M`].
     pub fn stereo(pixels_per_unit: f64, focal_px: f64, baseline_m: f64, doffs_px: f64) -> Result<Self> {
         positive("pixels of disparity per map unit", pixels_per_unit)?;
         positive("focal length in pixels", focal_px)?;
@@ -116,7 +116,12 @@ impl Measure {
             return Err(Error::Camera { name: "doffs", given: doffs_px, accepted: "a finite number of pixels" });
         }
         let f_t = focal_px * baseline_m;
-        Ok(Measure::InverseDepth { slope: pixels_per_unit / f_t, offset: doffs_px / f_t })
+        Measure::InverseDepth { slope: pixels_per_unit / f_t, offset: doffs_px / f_t }.checked()
+    }
+
+    fn checked(self) -> Result<Self> {
+        self.check()?;
+        Ok(self)
     }
 
     /// That its numbers are accepted, however it was made.
@@ -125,15 +130,14 @@ impl Measure {
     /// [`Error::Camera`] as of the constructors.
     pub(crate) fn check(&self) -> Result<()> {
         match *self {
-            Measure::Depth { metres } => positive("metres per map unit", metres),
+            Measure::Depth { metres } => {
+                let accepted = "a number of metres from 1e-12 to 1e12";
+                within("metres per map unit", metres, METRES_PER_UNIT.contains(&metres), accepted)
+            }
             Measure::InverseDepth { slope, offset } => {
-                if !slope.is_finite() || slope == 0.0 {
-                    return Err(Error::Camera { name: "slope", given: slope, accepted: "a finite number, not 0" });
-                }
-                if !offset.is_finite() {
-                    return Err(Error::Camera { name: "offset", given: offset, accepted: "a finite number" });
-                }
-                Ok(())
+                let accepted = "a number of 1/m per map unit, from 1e-15 to 1e15 or from -1e15 to -1e-15";
+                within("slope", slope, SLOPE_PER_M.contains(&slope.abs()), accepted)?;
+                within("offset", offset, offset.abs() <= MAX_OFFSET_PER_M, "a number of 1/m from -1e15 to 1e15")
             }
             Measure::Disparity => Ok(()),
         }
@@ -173,11 +177,12 @@ impl Measure {
 }
 
 fn positive(name: &'static str, given: f64) -> Result<()> {
-    if given.is_finite() && given > 0.0 {
-        Ok(())
-    } else {
-        Err(Error::Camera { name, given, accepted: "a finite number above 0" })
-    }
+    within(name, given, given.is_finite() && given > 0.0, "a finite number above 0")
+}
+
+/// Refuses a quantity that is not accepted.
+pub(crate) fn within(name: &'static str, given: f64, is_accepted: bool, accepted: &'static str) -> Result<()> {
+    if is_accepted { Ok(()) } else { Err(Error::Camera { name, given, accepted }) }
 }
 
 /// A plane in camera coordinates, Hessian normal form `normal . P + distance = 0`, metres. The

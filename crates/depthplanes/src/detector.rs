@@ -5,8 +5,8 @@ use crate::detection::Detection;
 use crate::error::{Error, Result};
 use crate::explanation::Explanation;
 use crate::map::AnyView;
-use crate::methods;
-use crate::methods::method::{Configured, Job, Parameters};
+use crate::methods::method::{Configured, Job, MethodInfo, Parameters, names};
+use crate::methods::{self, METHODS};
 use crate::sensor::Sensor;
 use crate::util::parallel::install;
 
@@ -116,7 +116,7 @@ impl Detector {
     }
 
     /// Whether to report curved surfaces as well ([`Detection::curved`]), which costs time; the stage `label` then ends twice. `planar` tells them from
-    /// planes, `ngaf` does not.
+    /// planes ([`crate::methods::MethodInfo::tells_curved`]); with a method that does not, a detection is an error.
     #[must_use]
     pub fn curved(mut self, yes: bool) -> Self {
         self.curved = yes;
@@ -139,6 +139,7 @@ impl Detector {
     /// [`Error::Camera`] for a unit or a camera whose numbers mean nothing.
     /// [`Error::NotMetric`] if coplanar planes are to be joined, or a parameter is in metres, and the sensor is not known
     /// well enough for planes in metres.
+    /// [`Error::NoCurved`] if curved surfaces are asked of a method that does not tell them.
     /// [`Error::TooManyPlanes`] if there are more planes than 16-bit labels can name.
     pub fn detect<'m>(&mut self, map: impl Into<AnyView<'m>>) -> Result<&Detection> {
         self.detect_observed(map, &mut |_| ())
@@ -154,6 +155,11 @@ impl Detector {
         observer: &mut (dyn FnMut(&'static str) + Send),
     ) -> Result<&Detection> {
         self.sensor.check()?;
+        let info = self.method.info();
+        if self.curved && !info.tells_curved {
+            let accepted = names(METHODS.iter().filter(|method| method.tells_curved).map(|method| method.name));
+            return Err(Error::NoCurved { method: info.name, accepted });
+        }
         if self.joiner.is_some() {
             self.sensor.check_metric("merge-coplanar")?;
         }
@@ -161,7 +167,8 @@ impl Detector {
         let joiner = self.joiner.as_mut();
         let mut job = Job { sensor: self.sensor, threads: self.threads, curved: self.curved, joiner, observer };
         let (map, method, detection) = (map.into(), &mut self.method, &mut self.detection);
-        install(self.threads, || method.0.run(map, &mut job, detection))?;
+        install(self.threads, || method.0.run(map, &mut job, detection))
+            .map_err(|error| named(error, method.info()))?;
         Ok(&self.detection)
     }
 
@@ -190,6 +197,22 @@ impl Detector {
         self.sensor.check()?;
         let mut job =
             Job { sensor: self.sensor, threads: self.threads, curved: false, joiner: None, observer: &mut |_| () };
-        self.method.0.explain(map, &mut job, at)
+        self.method.0.explain(map, &mut job, at).map_err(|error| named(error, self.method.info()))
+    }
+}
+
+/// Parameters that leave fewer planes if they are raised, those that do most first.
+const FEWER_PLANES: [&str; 7] = ["min", "min-area", "theta", "theta-gradient", "epsilon", "window", "noise-scale"];
+
+/// An error with the names of the method's own parameters.
+fn named(error: Error, method: &MethodInfo) -> Error {
+    match error {
+        Error::TooManyPlanes { found, .. } => {
+            let is_in_table = |name: &&str| method.params.iter().any(|param| param.name == *name);
+            let raised: Vec<String> =
+                FEWER_PLANES.into_iter().filter(is_in_table).map(|name| format!("`{name}`")).collect();
+            Error::TooManyPlanes { found, raise: raised.join(" or ") }
+        }
+        other => other,
     }
 }

@@ -105,6 +105,15 @@ pub enum Error {
     TooManyPlanes {
         /// Planes found.
         found: usize,
+        /// The method's parameters that leave fewer if they are raised, as a message has them: `` `min` or `theta` ``.
+        raise: String,
+    },
+    /// Curved surfaces were asked of a method that does not tell them from planes.
+    NoCurved {
+        /// The method.
+        method: &'static str,
+        /// The methods that do.
+        accepted: String,
     },
     /// A pixel outside of the map.
     Pixel {
@@ -192,10 +201,12 @@ impl fmt::Display for Error {
                     "the maps' numbers mean different things; one noise estimate needs maps of depth only, or disparity of one rig only"
                 )
             }
-            Error::TooManyPlanes { found } => write!(
-                f,
-                "{found} planes were found and labels have 16 bits (65535 at most); raise `min` or `theta`, or enhance the map first"
-            ),
+            Error::TooManyPlanes { found, raise } => {
+                write!(f, "{found} planes were found and labels have 16 bits (65535 at most); raise {raise}")
+            }
+            Error::NoCurved { method, accepted } => {
+                write!(f, "method `{method}` does not tell curved surfaces from planes; accepted: {accepted}")
+            }
             Error::Pixel { at: [u, v], width, height } => write!(
                 f,
                 "pixel {u},{v} is outside of the map; accepted: columns 0 to {}, rows 0 to {}",

@@ -56,10 +56,11 @@ impl Sensor {
     /// That its numbers mean something, however it was made.
     ///
     /// # Errors
-    /// [`Error::Camera`] for a unit that is not finite and positive, a slope or a focal length that is not finite or 0, and
-    /// an offset or a principal point that is not finite.
+    /// [`Error::Camera`] for a unit, a slope, an offset, a camera or a noise outside of [`crate::limits`].
     pub(crate) fn check(&self) -> Result<()> {
         self.measure.check()?;
+        self.noise.map_or(Ok(()), |noise| noise.check("noise"))?;
+        self.smooth_noise.map_or(Ok(()), |noise| noise.check("smooth noise"))?;
         self.intrinsics.map_or(Ok(()), |camera| Intrinsics::new(camera.fx, camera.fy, camera.cx, camera.cy).map(drop))
     }
 

@@ -1,9 +1,10 @@
 //! Surfaces that bend: how often a flat one is called so, how often a curved one is, and what is reported of them.
 
 use depthplanes::explanation::Explanation;
+use depthplanes::methods::METHODS;
 use depthplanes::noise::SensorNoise;
 use depthplanes::scene::{Camera, Place, Pose, Random, Scene, SceneFrame, SensorModel, Spec, render};
-use depthplanes::{DepthView, Detector, Measure, Ngaf, Planar, Sensor};
+use depthplanes::{DepthView, Detector, Error, Measure, Planar, Sensor};
 
 fn scene(spec: &str) -> SceneFrame {
     spec.parse::<Spec>().unwrap().frame().unwrap()
@@ -199,10 +200,46 @@ fn curved_regions_are_as_their_labels_say_and_planes_stay_the_same() {
 }
 
 #[test]
-fn a_method_that_does_not_tell_curved_surfaces_reports_none() {
+fn curved_surfaces_of_a_method_that_does_not_tell_them_are_an_error() {
     let frame = scene("curved:sensor=clean_mm,size=160x120");
-    let mut detector = Detector::new(Ngaf::default()).unwrap().sensor(frame.sensor).curved(true);
-    assert!(detector.detect(frame.view()).unwrap().curved.is_none());
+    for method in METHODS {
+        let mut detector = Detector::new(*method).unwrap().sensor(frame.sensor).curved(true);
+        match detector.detect(frame.view()) {
+            Ok(found) => assert!(method.tells_curved && found.curved.is_some()),
+            Err(error) => {
+                assert_eq!(error, Error::NoCurved { method: method.name, accepted: "planar".to_string() });
+                assert!(error.to_string().contains(method.name) && error.to_string().contains("accepted: planar"));
+            }
+        }
+        let mut detector = Detector::new(*method).unwrap().sensor(frame.sensor);
+        assert!(detector.detect(frame.view()).unwrap().curved.is_none());
+    }
+}
+
+#[test]
+fn no_pixel_is_both_curved_and_in_a_plane() {
+    for seed in 0..60 {
+        let mut random = Random::new(seed);
+        let (width, height) = (random.whole(20, 90), random.whole(20, 70));
+        let [cu, cv, radius] = [width as f64, height as f64, 60.0].map(|most| random.between(8.0, most));
+        let noise = [0.0, 3.0, 40.0][random.whole(0, 2)];
+        let value = |at: usize, random: &mut Random| {
+            let (u, v) = ((at % width) as f64 - cu, (at / width) as f64 - cv);
+            let ball = (1.0 - (u * u + v * v) / (radius * radius)).max(0.0).sqrt();
+            let gap = u.abs() < 1.0 || random.uniform() < 0.02;
+            if gap { 0 } else { (2000.0 - 400.0 * ball + noise * random.gaussian()) as u16 }
+        };
+        let map: Vec<u16> = (0..width * height).map(|at| value(at, &mut random)).collect();
+        let view = DepthView::new(&map, width, height).unwrap();
+        for (scale, threshold) in [(1.0, 3.0), (0.02, 0.6), (0.1, 20.0)] {
+            let planar = Planar::default().min(3).noise_scale(scale).inlier_threshold(threshold);
+            let mut detector = Detector::new(planar).unwrap().curved(true);
+            let found = detector.detect(view).unwrap();
+            let curved = &found.curved.as_ref().unwrap().labels;
+            let both = curved.iter().zip(&found.labels).filter(|(curved, plane)| **curved > 0 && **plane > 0);
+            assert_eq!(both.count(), 0, "seed {seed}, noise scale {scale}");
+        }
+    }
 }
 
 /// Segments around a sphere as people model them, the fewest.

@@ -2,6 +2,7 @@
 
 mod naive;
 
+use depthplanes::noise::SensorNoise;
 use depthplanes::scene::{Camera, Pose, SCENES, Scene, SceneFrame, SensorModel, Spec, render};
 use depthplanes::{AnyView, DepthView, Detection, Detector, Intrinsics, Measure, Ngaf, Plane, Sensor, with_view};
 use naive::{Fit, Random, Record};
@@ -441,6 +442,10 @@ fn a_sensor_whose_numbers_mean_nothing_is_refused_however_it_was_made() {
         Sensor::default().measure(Measure::InverseDepth { slope: 1.0, offset: f64::INFINITY }),
         Sensor::default().intrinsics(camera),
         Sensor::default().intrinsics(Intrinsics { fx: 50.0, cx: f64::NAN, ..camera }),
+        Sensor::default().intrinsics(Intrinsics { fx: 1e-9, ..camera }),
+        Sensor::default().noise(SensorNoise::Depth { base: f64::NAN, growth: 0.0 }),
+        Sensor::default().smooth_noise(SensorNoise::Depth { base: 0.0, growth: 1e30 }),
+        Sensor::default().noise(SensorNoise::Value { sigma: -1.0 }),
     ];
     for sensor in wrong {
         let mut detector = Detector::default().sensor(sensor);

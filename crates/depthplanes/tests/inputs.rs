@@ -198,8 +198,8 @@ fn the_longest_sides_run() {
 fn cameras_that_describe_no_real_one_are_refused() {
     let nan = f64::NAN;
     let camera = |name, given: f64, accepted| Error::Camera { name, given, accepted };
-    for given in [0.0, f64::INFINITY] {
-        let accepted = "a finite focal length in pixels, not 0";
+    for given in [0.0, f64::INFINITY, 1e-9, -1e-4, 2e9] {
+        let accepted = "a focal length in pixels, from 0.001 to 1e9 or from -1e9 to -0.001";
         message(Intrinsics::new(given, 1.0, 0.0, 0.0), &camera("fx", given, accepted), &[&"fx", &given, &accepted]);
         message(Intrinsics::new(1.0, given, 0.0, 0.0), &camera("fy", given, accepted), &[&"fy", &given, &accepted]);
     }
@@ -218,6 +218,8 @@ fn cameras_that_describe_no_real_one_are_refused() {
         assert!(text.contains(name) && text.contains("NaN") && text.contains("accepted"), "{text}");
     }
     assert!(Measure::depth(-1.0).is_err() && Measure::depth(0.0).is_err());
+    assert!(Measure::depth(1e-30).is_err() && Measure::depth(1e30).is_err() && Measure::depth(1e-9).is_ok());
+    assert!(Measure::stereo(1.0, 1e10, 1e10, 0.0).is_err() && Intrinsics::new(500.0, 500.0, 1e10, 0.0).is_err());
     assert!(Intrinsics::new(-500.0, -500.0, -3.0, 1e4).is_ok());
 }
 

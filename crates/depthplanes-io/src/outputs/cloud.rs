@@ -1,7 +1,7 @@
 //! The point cloud: every valid pixel in metres, with its colour and its plane's label.
 //!
 //! Binary little-endian PLY, which MeshLab, CloudCompare, Open3D and Blender read. Points are in the
-//! optical frame: x right, y down, z forward.
+//! optical frame: x right, y down, z forward. Points beyond single precision are left out.
 
 use super::colour::palette;
 use super::error::OutputError;
@@ -46,9 +46,13 @@ fn points(report: &Report<'_>) -> Result<Vec<u8>, OutputError> {
     let mut add = |at: usize, value: f64| {
         let Some(z) = measure.depth_m(value) else { return };
         let ray = camera.ray((at % width) as f64, (at / width) as f64);
+        let point = ray.map(|r| (r * z) as f32);
+        if !point.iter().all(|x| x.is_finite()) {
+            return; // beyond single precision
+        }
         let label = labels[at];
         let shown = if label == 0 { greys[at] } else { palette[usize::from(label)] };
-        bytes.extend(ray.iter().flat_map(|r| ((r * z) as f32).to_le_bytes()));
+        bytes.extend(point.iter().flat_map(|x| x.to_le_bytes()));
         bytes.extend(shown);
         bytes.extend(label.to_le_bytes());
     };

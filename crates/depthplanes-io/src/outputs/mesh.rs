@@ -2,12 +2,12 @@
 //!
 //! Binary little-endian PLY in the optical frame (x right, y down, z forward), metres. Vertices lie
 //! on the fitted planes; faces turn counter-clockwise seen from the camera. Planes that are not
-//! known in metres, or reach infinity, are left out.
+//! known in metres, reach infinity or lie beyond single precision are left out.
 
 use super::colour::colour;
 use super::error::OutputError;
 use super::output::{Output, Report, Writer};
-use depthplanes::outline::{Outliner, Outlines, Polygon};
+use depthplanes::outline::{Outline, Outliner, Outlines, Polygon, Ring};
 use earcut::Earcut;
 
 pub(super) const OUTPUT: Output = Output {
@@ -58,7 +58,7 @@ struct Mesh {
 impl Mesh {
     fn add_planes(&mut self, outlines: &Outlines) {
         let mut earcut = Earcut::new();
-        for outline in outlines.iter().filter(|outline| outline.is_metric()) {
+        for outline in outlines.iter().filter(is_in_reach) {
             outline.polygons().for_each(|polygon| self.add(&polygon, outline.label(), &mut earcut));
         }
     }
@@ -105,6 +105,14 @@ impl Mesh {
         }
         bytes
     }
+}
+
+/// Whether all corners of an outline are known in metres and can be written in single precision.
+fn is_in_reach(outline: &Outline<'_>) -> bool {
+    let is_finite =
+        |ring: Ring<'_>| ring.points_m().is_some_and(|points| points.flatten().all(|x| (x as f32).is_finite()));
+    let mut rings = outline.polygons().flat_map(|polygon| std::iter::once(polygon.outer()).chain(polygon.holes()));
+    rings.all(is_finite)
 }
 
 /// Whether a ring on the picture has a negative area, u to the right and v down.

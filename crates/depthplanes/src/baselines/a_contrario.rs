@@ -6,6 +6,7 @@
 //! open is our choice and marked so. docs/a-contrario.md has the model.
 
 use super::affine::Affine;
+use super::work::Work;
 use crate::limits::MAX_PLANES;
 use crate::methods::parameter::{Param, ParamKind};
 use crate::noise::NoiseModel;
@@ -54,6 +55,8 @@ pub(super) struct Background<'a> {
     /// For each pixel the last flood that saw it.
     seen: Vec<u32>,
     floods: u32,
+    /// What the whole search may still do.
+    pub(super) work: Work,
 }
 
 /// Connected pixels and the plane fitted to them.
@@ -77,7 +80,8 @@ impl<'a> Background<'a> {
         let pixels = affine.valid_pixels.max(1) as f64;
         // The count of shapes as in LSD (Grompone von Gioi et al., 2010), the cheap version.
         let log10_tests = 2.5 * pixels.log10() + (PRECISIONS as f64).log10();
-        Background { affine, delta, range, log10_tests, seen: vec![0; affine.q.len()], floods: 0 }
+        let work = Work::new(affine.q.len());
+        Background { affine, delta, range, log10_tests, seen: vec![0; affine.q.len()], floods: 0, work }
     }
 
     /// How far a pixel is off a plane, in its deltas; NaN where nothing was measured.
@@ -132,6 +136,7 @@ impl<'a> Background<'a> {
             next += 1;
             affine.neighbours(at as usize).for_each(|beside| visit(beside, &mut pixels));
         }
+        self.work.count(PRECISIONS * (pixels.len() + 1));
         let plane = self.fit(&pixels)?;
         let log10_nfa = self.log10_nfa(&pixels, rim, &plane);
         Some(Region { plane, pixels, rim, log10_nfa })

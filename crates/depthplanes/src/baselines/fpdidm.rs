@@ -70,6 +70,9 @@ impl Fpdidm {
         let mut is_seed = is_free.clone();
         let mut found = Vec::new();
         for (seed, plane) in seeds(background, around) {
+            if background.work.is_spent() {
+                break;
+            }
             if !is_seed[seed] {
                 continue;
             }
@@ -112,6 +115,7 @@ impl Fpdidm {
                 }
             }
         }
+        background.work.count(members.len());
         (members, sums.fit().map_or(plane, |fit| fit.moved([u, v, q]).abc))
     }
 

@@ -29,6 +29,8 @@ const APART: f64 = 2.0;
 const TOGETHER: f64 = 20.0;
 /// Draws without a plane before it gives up: what is left then forms no planes (our choice).
 const IDLE: usize = 200_000;
+/// What a draw takes, in looks at a pixel.
+const DRAW: usize = 16;
 
 pub(super) struct Hough {
     min: usize,
@@ -123,6 +125,10 @@ impl Hough {
         let mut free = cloud.known.clone();
         let (mut misses, mut idle) = (0, 0);
         while free.len() > self.min && misses < self.misses && idle < IDLE && pieces.count() < MAX_PLANES {
+            if pieces.work.is_spent() {
+                break;
+            }
+            pieces.work.count(DRAW);
             idle += 1;
             let Some((plane, first)) = triples.draw(&free, &pieces) else { continue };
             let Some(cell) = ball.cell(&plane) else { continue };
@@ -130,10 +136,12 @@ impl Hough {
             if ball.vote(cell, plane, first) != self.votes {
                 continue;
             }
+            pieces.work.count(ball.votes.len());
             let Some((plane, voters)) = ball.winner(cell) else { continue };
             match pieces.take(&plane, &voters, self.min) {
                 Some(_) => {
                     (misses, idle) = (0, 0);
+                    pieces.work.count(free.len());
                     free.retain(|&at| pieces.is_free(at as usize));
                     ball.clear();
                 }

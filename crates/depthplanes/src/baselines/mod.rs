@@ -16,6 +16,7 @@ mod normals;
 mod pieces;
 mod ppdfdm;
 mod ransac;
+mod work;
 
 use crate::methods::method::MethodInfo;
 use baseline::row;

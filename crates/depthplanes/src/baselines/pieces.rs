@@ -7,6 +7,7 @@
 
 use super::affine::Affine;
 use super::cloud::Cloud;
+use super::work::Work;
 use crate::methods::parameter::{Param, ParamKind};
 use crate::methods::rays::{Plane3, Vec3, dot};
 use crate::statistics::least_squares::Moments;
@@ -63,6 +64,8 @@ pub(super) struct Pieces<'a> {
     /// For each pixel the last search that reached it.
     reached: Vec<u32>,
     search: u32,
+    /// What the whole search may still do.
+    pub(super) work: Work,
 }
 
 impl<'a> Pieces<'a> {
@@ -70,7 +73,8 @@ impl<'a> Pieces<'a> {
     pub(super) fn new(affine: &'a Affine, cloud: &'a Cloud, tolerance: Tolerance, reach: usize) -> Self {
         let pixels = affine.q.len();
         let (image, lent, reached) = (vec![0; pixels], vec![0; pixels], vec![0; pixels]);
-        Pieces { affine, cloud, tolerance, reach, planes: Vec::new(), image, lent, reached, search: 0 }
+        let work = Work::new(pixels);
+        Pieces { affine, cloud, tolerance, reach, planes: Vec::new(), image, lent, reached, search: 0, work }
     }
 
     /// How many there are.
@@ -102,6 +106,10 @@ impl<'a> Pieces<'a> {
         from: &[u32],
         most: usize,
     ) -> Option<Vec<u32>> {
+        if self.search == u32::MAX {
+            self.reached.fill(0);
+            self.search = 0;
+        }
         self.search += 1;
         let (mut best, mut piece) = (Vec::new(), Vec::new());
         for &start in from {
@@ -114,9 +122,11 @@ impl<'a> Pieces<'a> {
                     self.reach(is_among, plane, beside, &mut piece);
                 }
                 if piece.len() > most {
+                    self.work.count(piece.len());
                     return None;
                 }
             }
+            self.work.count(piece.len() + 1);
             if piece.len() > best.len() {
                 std::mem::swap(&mut best, &mut piece);
             }

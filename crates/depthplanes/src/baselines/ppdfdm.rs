@@ -8,12 +8,18 @@
 use super::a_contrario::{Abc, Background, DELTA, EPS, Region, paint};
 use super::affine::Affine;
 use super::baseline::{Baseline, Input, SEED, Segmented, Values};
+use super::work::Work;
 use crate::limits::MAX_PLANES;
 use crate::methods::extraction::{MIN, STAGES};
 use crate::methods::method::Job;
 use crate::methods::parameter::{Param, ParamKind};
 use crate::util::random::Random;
 use std::collections::BTreeSet;
+
+/// Most pixels that are looked at for each pixel of the map while planes are drawn; by default it is 60.
+const LOOKS_OF_DRAWS: usize = 4096;
+/// Most pixels of a disc that are looked at; of more, every second one, third one and so on.
+const MOST_OF_DISC: usize = 1024;
 
 pub(super) struct Ppdfdm {
     min: usize,
@@ -115,9 +121,11 @@ impl Ppdfdm {
     /// pixels, fitted to these.
     fn plane_at(&self, background: &Background<'_>, at: usize) -> Option<Seed> {
         let disc = self.disc(background.affine, at);
+        // Close seeds with large discs look at every pixel again and again.
+        let looks = LOOKS_OF_DRAWS * self.spacing * self.spacing / disc.len().max(1);
         let mut random = Random::new((self.seed << 32) ^ at as u64);
         let mut best = (Abc::default(), 0);
-        for _ in 0..self.draws {
+        for _ in 0..self.draws.min(looks.max(1)) {
             let three = [(); 3].map(|()| disc.get(random.whole(0, disc.len().saturating_sub(1))).copied());
             let [Some(one), Some(two), Some(three)] = three else { return None };
             let Some(plane) = background.fit(&[one, two, three]) else { continue };
@@ -133,18 +141,20 @@ impl Ppdfdm {
             .filter(|_| count > 0)
     }
 
-    /// The valid pixels around a seed.
+    /// The valid pixels around a seed, or evenly some of them.
     fn disc(&self, affine: &Affine, at: usize) -> Vec<u32> {
         let (u, v, radius) = (at % affine.width, at / affine.width, self.radius);
         let span = |middle: usize, side: usize| middle.saturating_sub(radius)..(middle + radius + 1).min(side);
         let square = |a: usize, b: usize| a.abs_diff(b).pow(2);
-        span(v, affine.height)
+        let all: Vec<u32> = span(v, affine.height)
             .flat_map(|y| span(u, affine.width).map(move |x| (x, y)))
             .filter(|&(x, y)| square(x, u) + square(y, v) <= radius * radius)
             .map(|(x, y)| y * affine.width + x)
             .filter(|&at| affine.q[at].is_finite())
             .map(|at| at as u32)
-            .collect()
+            .collect();
+        let every = all.len().div_ceil(MOST_OF_DISC).max(1);
+        all.into_iter().step_by(every).collect()
     }
 
     /// Takes the region with the fewest false alarms, and searches on in what is left.
@@ -156,10 +166,14 @@ impl Ppdfdm {
         let mut waits = vec![true; seeds.len()];
         let mut open: Vec<(usize, Region)> = Vec::new();
         let mut found = Vec::new();
-        while found.len() < MAX_PLANES {
+        while found.len() < MAX_PLANES && !background.work.is_spent() {
+            background.work.count(seeds.len());
             for (number, seed) in seeds.iter().enumerate() {
                 if waits[number] && is_free[seed.at] && cover[seed.at] == 0 {
                     waits[number] = false;
+                    if background.work.is_spent() {
+                        break;
+                    }
                     if let Some(region) = background.settle(seed.at, &seed.plane, &is_free) {
                         region.pixels.iter().for_each(|&at| cover[at as usize] += 1);
                         open.push((number, region));
@@ -173,6 +187,7 @@ impl Ppdfdm {
             let (_, region) = open.swap_remove(best);
             region.pixels.iter().for_each(|&at| is_free[at as usize] = false);
             found.push(region);
+            background.work.count(open.iter().map(|(_, region)| region.pixels.len()).sum());
             // Regions that share pixels with it grow anew; the others stay as they are.
             open.retain(|(number, region)| {
                 let is_touched = region.pixels.iter().any(|&at| !is_free[at as usize]);
@@ -189,13 +204,15 @@ impl Ppdfdm {
 
 /// Joins two regions that touch if one plane explains both with fewer false alarms than two planes do.
 fn merge(background: &Background<'_>, regions: &mut Vec<Region>) {
+    let mut work = Work::new(background.affine.q.len());
     loop {
         let image = paint(regions.iter(), background.affine.q.len());
         let mut is_changed = vec![false; regions.len()];
         for [one, other] in touching(background.affine, &image) {
-            if is_changed[one] || is_changed[other] {
+            if is_changed[one] || is_changed[other] || work.is_spent() {
                 continue;
             }
+            work.count(regions[one].pixels.len() + regions[other].pixels.len());
             let pixels = [&regions[one].pixels[..], &regions[other].pixels[..]].concat();
             let rim = regions[one].rim + regions[other].rim;
             let Some(plane) = background.fit(&pixels) else { continue };
@@ -210,6 +227,7 @@ fn merge(background: &Background<'_>, regions: &mut Vec<Region>) {
             return;
         }
         regions.retain(|region| !region.pixels.is_empty());
+        work.count(background.affine.q.len());
     }
 }
 

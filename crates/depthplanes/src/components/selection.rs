@@ -64,7 +64,7 @@ impl Selection {
         let found = groups.sizes().iter().filter(|&&size| size > min).count();
         if found > MAX_PLANES {
             self.label_groups(groups);
-            return Err(Error::TooManyPlanes { found });
+            return Err(Error::TooManyPlanes { found, raise: "`min`".to_string() });
         }
         // Most groups of a noisy map are tiny: a block of them is passed over by one test.
         for (first, block) in (0u32..).step_by(BLOCK).zip(groups.sizes().chunks(BLOCK)) {

@@ -168,6 +168,6 @@ impl MethodInfo {
 }
 
 /// A list of names, for a message.
-pub(super) fn names<'a>(all: impl Iterator<Item = &'a str>) -> String {
+pub(crate) fn names<'a>(all: impl Iterator<Item = &'a str>) -> String {
     all.collect::<Vec<_>>().join(", ")
 }

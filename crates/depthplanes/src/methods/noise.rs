@@ -2,13 +2,14 @@
 //! for `planar` its smooth part as well, which does not average out within a surface.
 
 use super::parameter::{Param, ParamKind};
+use crate::limits::MAX_NOISE;
 use crate::noise::{SensorNoise, Space};
 
 pub(crate) const NOISE: Param = Param {
     name: "noise",
     default: 0.0,
     min: 0.0,
-    max: f64::MAX,
+    max: MAX_NOISE,
     kind: ParamKind::Real,
     unit: "m or map units",
     meaning: "Noise of a single pixel: standard deviation of depth at range 0, metres, or of disparity, map units. If `noise-growth` is 0 too, it is the preset's, or else estimated from the map.",
@@ -19,7 +20,7 @@ pub(crate) const NOISE_GROWTH: Param = Param {
     name: "noise-growth",
     default: 0.0,
     min: 0.0,
-    max: f64::MAX,
+    max: MAX_NOISE,
     kind: ParamKind::Real,
     unit: "1/m",
     meaning: "Growth of `noise` with the square of the range, 0.0014 for a Kinect v1; not used for disparity.",
@@ -30,7 +31,7 @@ pub(crate) const SMOOTH_NOISE: Param = Param {
     name: "smooth-noise",
     default: 0.0,
     min: 0.0,
-    max: f64::MAX,
+    max: MAX_NOISE,
     kind: ParamKind::Real,
     unit: "m or map units",
     meaning: "Smooth noise, which pixels share over tens of pixels: standard deviation of depth at range 0, metres, or of disparity, map units. If `smooth-noise-growth` is 0 too, it is the preset's, or else estimated from the map.",
@@ -41,7 +42,7 @@ pub(crate) const SMOOTH_NOISE_GROWTH: Param = Param {
     name: "smooth-noise-growth",
     default: 0.0,
     min: 0.0,
-    max: f64::MAX,
+    max: MAX_NOISE,
     kind: ParamKind::Real,
     unit: "1/m",
     meaning: "Growth of `smooth-noise` with the square of the range; not used for disparity.",

@@ -1,6 +1,9 @@
 //! What a sensor's maker or a calibration says of its error.
 
 use super::table::NoiseTable;
+use crate::camera::within;
+use crate::error::Result;
+use crate::limits::MAX_NOISE;
 
 /// What a sensor's maker or a calibration says of its error: the standard deviation of one pixel. Rounding to the
 /// map's steps comes on top.
@@ -25,6 +28,20 @@ pub enum SensorNoise {
 }
 
 impl SensorNoise {
+    /// That its numbers are accepted, however it was made. Tables are checked when they are made.
+    ///
+    /// # Errors
+    /// [`Error::Camera`](crate::Error::Camera), which calls it `name`, for a number below 0 or above [`MAX_NOISE`].
+    pub(crate) fn check(&self, name: &'static str) -> Result<()> {
+        let numbers = match *self {
+            SensorNoise::Depth { base, growth } => [base, growth],
+            SensorNoise::Value { sigma } => [sigma, 0.0],
+            SensorNoise::Table(_) => return Ok(()),
+        };
+        let accepted = "standard deviations from 0 to 1e12";
+        numbers.into_iter().try_for_each(|given| within(name, given, (0.0..=MAX_NOISE).contains(&given), accepted))
+    }
+
     /// Standard deviation of depth at range `depth_m`, metres; `None` for [`SensorNoise::Value`], which takes a
     /// measure to become depth ([`super::NoiseModel::depth_sigma_m`]).
     pub fn depth_sigma_m(&self, depth_m: f64) -> Option<f64> {

@@ -4,6 +4,7 @@
 //! is fixed, so that a sensor stays a plain value that can be copied and compared.
 
 use crate::error::{Error, Result};
+use crate::limits::MAX_NOISE;
 
 /// Most rows of a [`NoiseTable`].
 pub const MAX_ROWS: usize = 16;
@@ -43,8 +44,8 @@ impl NoiseTable {
     /// A table of rows [range, standard deviation], metres, by increasing range.
     ///
     /// # Errors
-    /// [`Error::NoiseTable`] for no row or more than [`MAX_ROWS`], a range that is not finite, above 0 and above the one
-    /// before, or a standard deviation that is not finite and at least 0.
+    /// [`Error::NoiseTable`] for no row or more than [`MAX_ROWS`], a range that is not above 0 and above the one before,
+    /// a standard deviation below 0, or either above [`MAX_NOISE`].
     pub fn new(rows: &[[f64; 2]]) -> Result<Self> {
         let wrong = |row, given, accepted| Err(Error::NoiseTable { row, given, accepted });
         let Some(last) = rows.last().filter(|_| rows.len() <= MAX_ROWS) else {
@@ -52,11 +53,11 @@ impl NoiseTable {
         };
         let mut before = 0.0;
         for (row, &[range, sigma]) in (1..).zip(rows) {
-            if !(range > before && range.is_finite()) {
-                return wrong(row, range, "finite ranges in metres, above 0, each above the one before");
+            if !(range > before && range <= MAX_NOISE) {
+                return wrong(row, range, "ranges in metres, above 0, each above the one before, at most 1e12");
             }
-            if !(sigma >= 0.0 && sigma.is_finite()) {
-                return wrong(row, sigma, "finite standard deviations in metres, at least 0");
+            if !(0.0..=MAX_NOISE).contains(&sigma) {
+                return wrong(row, sigma, "standard deviations in metres, from 0 to 1e12");
             }
             before = range;
         }

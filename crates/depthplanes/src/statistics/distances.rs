@@ -132,13 +132,23 @@ impl Distances {
             None => (fit.covariance(), CovarianceSource::Residuals),
         };
         let area = self.area / (plane.distance * (camera.fx * camera.fy).abs());
-        Some(MetricPlane {
+        let metric = MetricPlane {
             plane,
             rms_m: (self.squares.iter().sum::<f64>() / n).sqrt() * plane.distance,
             centroid_m: self.point.map(|sum| sum / n),
             area_m2: Some(area).filter(|area| !self.reaches_infinity && area.is_finite()),
             covariance: metric_covariance(fit.abc, &covariance, camera),
             covariance_from,
-        })
+        };
+        is_finite(&metric).then_some(metric)
     }
+}
+
+/// Whether all numbers of a plane can be given: values near the ends of single precision and noise beyond measure lead
+/// out of what numbers can hold.
+fn is_finite(metric: &MetricPlane) -> bool {
+    let MetricPlane { plane, rms_m, centroid_m, covariance, .. } = metric;
+    let numbers =
+        plane.normal.iter().chain([&plane.distance, rms_m]).chain(centroid_m).chain(covariance.iter().flatten());
+    numbers.into_iter().all(|number| number.is_finite())
 }

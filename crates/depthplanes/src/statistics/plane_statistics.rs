@@ -149,8 +149,9 @@ impl PlaneStatistics {
             _ => (),
         }
         planes.extend((1..).zip(&self.tallies).map(|(label, tally)| {
-            let fit =
-                tally.fit.map(|fit| MapFit { gradient: [fit.abc[0], fit.abc[1]], offset: fit.abc[2], rms: fit.rms });
+            let is_finite = |fit: &AffineFit| fit.abc.iter().chain([&fit.rms]).all(|number| number.is_finite());
+            let fit = tally.fit.filter(is_finite);
+            let fit = fit.map(|fit| MapFit { gradient: [fit.abc[0], fit.abc[1]], offset: fit.abc[2], rms: fit.rms });
             let metric = || self.distances.get(usize::from(label) - 1)?.metric(tally, seen);
             Plane {
                 label,

@@ -19,7 +19,7 @@ use crate::methods::method::Job;
 use crate::methods::parameter::{Param, ParamKind};
 use crate::util::random::Random;
 use draw::Draws;
-use score::{Candidate, Free};
+use score::{Candidate, FIRST, Free};
 
 /// Draws between two looks at the candidates.
 const BATCH: usize = 128;
@@ -104,12 +104,14 @@ impl Ransac {
         let mut free = Free::new(cloud, &mut random);
         let mut draws = Draws::new(affine);
         let mut candidates: Vec<Candidate> = Vec::new();
-        while free.len() > self.min && pieces.count() < MAX_PLANES {
+        while free.len() > self.min && pieces.count() < MAX_PLANES && !pieces.work.is_spent() {
+            pieces.work.count(BATCH * FIRST.min(free.len()));
             candidates.extend((0..BATCH).filter_map(|_| draws.draw(&free, &pieces, &mut random)));
             candidates.retain(|candidate| candidate.most > self.min as f64);
             while let Some(best) = self.best(&mut candidates, &free, &mut pieces, &draws) {
                 let Candidate { plane, samples, .. } = candidates.swap_remove(best);
                 if let Some(size) = pieces.take(&plane, &samples, self.min) {
+                    pieces.work.count(free.len());
                     draws.forget(size as f64 / free.len() as f64);
                     free.retain(&pieces);
                     candidates.retain(|candidate| candidate.samples.iter().all(|&at| pieces.is_free(at as usize)));
@@ -133,7 +135,8 @@ impl Ransac {
         pieces: &mut Pieces<'_>,
         draws: &Draws,
     ) -> Option<usize> {
-        loop {
+        while !pieces.work.is_spent() {
+            pieces.work.count(candidates.len());
             let most = |&a: &usize, &b: &usize| candidates[a].most.total_cmp(&candidates[b].most);
             let top = (0..candidates.len()).max_by(most)?;
             if draws.missed(candidates[top].most, free.len()) > self.overlooked {
@@ -148,5 +151,6 @@ impl Ransac {
                 candidates.swap_remove(top);
             }
         }
+        None
     }
 }

@@ -9,7 +9,7 @@ use crate::methods::rays::{Plane3, Vec3};
 use crate::util::random::Random;
 
 /// Points of the first subset.
-const FIRST: usize = 512;
+pub(super) const FIRST: usize = 512;
 
 /// A point that belongs to no piece.
 #[derive(Clone, Copy, Debug)]
@@ -77,7 +77,9 @@ impl Candidate {
 
     /// Tests it on as many points again, and looks for its piece among as many.
     pub(super) fn refine(&mut self, free: &Free, pieces: &mut Pieces<'_>) {
+        let tried = self.tried;
         self.score(free, &pieces.tolerance);
+        pieces.work.count(self.tried - tried);
         if let Some(piece) = pieces.largest(&self.plane, &self.samples, self.tried) {
             self.most = piece.len() as f64;
             self.is_known = true;

@@ -118,7 +118,7 @@ impl Runner {
 
         self.extract(&map, &noise, job, out)?;
         out.curved = match job.curved {
-            true => Some(self.find_curved(&map, job, &noise, out.curved.take())?),
+            true => Some(self.find_curved(&map, job, &noise, &out.labels, out.curved.take())?),
             false => None,
         };
         if job.curved {
@@ -282,17 +282,23 @@ impl Runner {
         extraction.extract_united(map, &ids, &wanted, bridge_gaps, job, out)
     }
 
-    /// Curved regions, where they are wanted; overwrites the region image. `old`: memory to reuse.
+    /// Curved regions, where they are wanted, of pixels that have no plane; overwrites the region image. `old`: memory to
+    /// reuse.
     fn find_curved<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
         job: &Job<'_>,
         noise: &NoiseModel,
+        planes: &[u16],
         old: Option<Curved>,
     ) -> Result<Curved> {
         self.assign(noise, true, job.threads);
         let Runner { params, affine, pyramid, regions, merger, image, extraction, facet_surfaces, .. } = self;
         join_facets(&regions.all, &merger.edges, noise, facet_surfaces, image, pyramid.grids[0].len());
+        // Bridges over gaps, strips and regions that touch give pixels to planes after they were assigned.
+        for (ids, labels) in image.chunks_exact_mut(affine.stride).zip(planes.chunks_exact(map.width())) {
+            ids.iter_mut().zip(labels).filter(|(_, label)| **label > 0).for_each(|(id, _)| *id = 0);
+        }
         extraction.extract_curved(map, &of_image(image, affine)?, params.min, job, old)
     }
 
