@@ -14,6 +14,7 @@ pub mod inspect;
 pub mod labels;
 pub mod noise_table;
 pub mod outputs;
+mod packed;
 pub mod presets;
 pub mod read;
 

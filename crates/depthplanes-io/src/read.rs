@@ -88,13 +88,19 @@ pub fn decode(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Frame> 
 
 fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
     let preset = options.preset.as_deref().map(presets::by_name).transpose()?;
-    let (mut image, format) = formats::decode(bytes, &options.decode)?;
+    let by_user = options.encoding.as_deref().map(encoding::by_name).transpose()?;
+    let channels = by_user.is_some_and(|encoding| encoding.channels);
+    let (mut image, format) = formats::decode(bytes, &DecodeOptions { channels, ..options.decode.clone() })?;
     if options.swap_bytes {
         swap_bytes(&mut image)?;
     }
-    let stated = options.encoding.as_deref().or(preset.map(|preset| preset.encoding));
+    let by_preset = || preset.map(|preset| encoding::by_name(preset.encoding)).transpose();
+    let stated = match by_user.or_else(|| encoding::stated_by_file(&image)) {
+        Some(encoding) => Some(encoding),
+        None => by_preset()?,
+    };
     let encoding = match stated {
-        Some(name) => encoding::by_name(name)?,
+        Some(encoding) => encoding,
         None => encoding::likely(&image.pixels, format.name, options.disparity || options.stereo.is_some()).0,
     };
     if options.disparity && !encoding.disparity {
@@ -104,7 +110,8 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
     let meaning = (encoding.apply)(&mut image, &Given { scale: options.scale, stereo: options.stereo })?;
     let intrinsics = camera(options, preset, &mut image)?;
     let of_preset = |part: fn(&SensorPreset) -> Option<PresetNoise>| part(preset?)?.of();
-    let missing = missing(options, &image)?.or(preset.and_then(|preset| preset.missing)).or(encoding.missing);
+    let of_preset_or_file = preset.and_then(|preset| preset.missing).or(image.missing);
+    let missing = missing(options, &image)?.or(of_preset_or_file).or(encoding.missing);
     let mut frame = Frame {
         width: image.width,
         height: image.height,

@@ -24,6 +24,7 @@ pub(crate) struct Reading {
     pub(crate) missing: Option<f64>,
     pub(crate) valid_range: Option<[f64; 2]>,
     pub(crate) raw_size: Option<(usize, usize)>,
+    pub(crate) raw_type: Option<String>,
     pub(crate) member: Option<String>,
 }
 
@@ -59,6 +60,7 @@ impl Reading {
             missing: number("missing"),
             valid_range: matches.get_one("valid-range").copied(),
             raw_size: matches.get_one("raw-size").copied(),
+            raw_type: text("raw-type"),
             member: text("member"),
         }
     }
@@ -93,7 +95,13 @@ pub(super) fn reading() -> Vec<Arg> {
         number("missing", "VALUE").help("A value that means `missing`, beside 0, NaN and the infinities"),
         numbers::<2>("valid-range", "LO,HI").help("Only values within this range, in map units, are valid"),
         Arg::new("raw-size").value_name("WxH").value_parser(size).help("Size of a headerless file"),
-        Arg::new("member").value_name("NAME").help("The array to read from a file that holds several"),
+        Arg::new("raw-type").value_name("TYPE").requires("raw-size").help(
+            "Sample type of a headerless file in numpy's words, such as uint16, uint16-be or float32; without it the \
+             length of the file decides",
+        ),
+        Arg::new("member")
+            .value_name("NAME")
+            .help("Which of several maps: the array's name (NPZ), its index (NPY), the page (TIFF)"),
     ];
     all.into_iter().map(|arg| with_long_name(arg).help_heading("Reading")).collect()
 }

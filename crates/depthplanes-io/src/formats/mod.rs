@@ -9,6 +9,7 @@
 
 mod bmp;
 mod bytes;
+mod channels;
 mod compressed_depth;
 #[cfg(feature = "exr")]
 mod exr;
@@ -24,12 +25,15 @@ mod pnm;
 mod raw;
 pub mod rvl;
 mod samples;
+mod spread;
 #[cfg(feature = "tiff")]
 mod tiff;
 mod unsupported;
 
-pub use compressed_depth::inverse_depth_measure;
+pub use compressed_depth::{inverse_depth_measure, quantised_inverse_depth};
 pub use format::{DecodeOptions, Format, Image, Limits};
+pub use raw::raw_types;
+pub(crate) use spread::bytes as bytes_of_channels;
 
 use crate::error::{Error, Result};
 
