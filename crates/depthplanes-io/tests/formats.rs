@@ -165,7 +165,7 @@ fn npy_clouds_give_their_z_and_pictures_are_refused() {
     assert_eq!((cloud.pixels, cloud.warnings.len()), (Pixels::F32(vec![2.0, 5.0, 8.0, 11.0]), 1));
     let columns = read(&npy("<f4", true, "(2, 2, 3)", &xyz)).unwrap();
     assert_eq!(columns.pixels, Pixels::F32(vec![8.0, 10.0, 9.0, 11.0]));
-    assert!(wrong(&npy("|u1", false, "(2, 2, 3)", &[0; 12])).contains("colour"));
+    assert!(wrong(&npy("|u1", false, "(2, 2, 3)", &[1, 2, 3, 1, 2, 3, 1, 2, 3, 4, 4, 5])).contains("colour"));
 }
 
 #[test]

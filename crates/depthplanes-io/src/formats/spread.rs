@@ -10,6 +10,8 @@ use crate::frame::Pixels;
 
 /// Fewer steps of a high byte say nothing.
 const FEWEST_STEPS: usize = 8;
+/// A channel of as few levels is a mask, or labels.
+const MASK_LEVELS: usize = 8;
 /// What neighbours differ by less than, a quarter of which random bytes would keep.
 const SMALL: i32 = 128;
 /// A distance that a scene is likely to have, metres: the guess whose median is nearest to it, by ratio, comes first.
@@ -66,6 +68,13 @@ impl Picture<'_> {
         beside.chain(self.pixels().zip(self.pixels().skip(self.width)))
     }
 
+    /// How many different bytes a channel has.
+    fn levels(&self, channel: usize) -> usize {
+        let mut seen = [false; 256];
+        self.pixels().for_each(|pixel| seen[usize::from(pixel[channel])] = true);
+        seen.iter().filter(|seen| **seen).count()
+    }
+
     fn varies(&self, channel: usize) -> bool {
         self.pixels().any(|pixel| pixel[channel] != self.bytes[channel])
     }
@@ -90,6 +99,9 @@ impl Picture<'_> {
     /// Whether `low` wraps round where `high` steps.
     fn carries(&self, low: usize, high: usize) -> bool {
         let value = |pixel: &[u8]| i32::from(pixel[high]) * 256 + i32::from(pixel[low]);
+        if self.levels(low) <= MASK_LEVELS {
+            return false;
+        }
         let is_most = |carried: usize, steps: usize| steps >= FEWEST_STEPS && 2 * carried > steps;
         let (mut steps, mut carried) = (0usize, 0usize);
         for (one, other) in self.neighbours() {
@@ -128,10 +140,11 @@ fn floats(picture: &Picture) -> Option<Guess> {
     if picture.channels != 4 {
         return None;
     }
-    let orders: [(&str, fn([u8; 4]) -> f32); 2] =
-        [("rgba-float-little-endian", f32::from_le_bytes), ("rgba-float-big-endian", f32::from_be_bytes)];
-    for (name, float) in orders {
-        let float = |pixel: &[u8]| f64::from(float([pixel[0], pixel[1], pixel[2], pixel[3]]));
+    for (name, big_endian) in [("rgba-float-little-endian", false), ("rgba-float-big-endian", true)] {
+        let float = |pixel: &[u8]| {
+            let bytes = [pixel[0], pixel[1], pixel[2], pixel[3]];
+            f64::from(if big_endian { f32::from_be_bytes(bytes) } else { f32::from_le_bytes(bytes) })
+        };
         let is_depth = |value: f64| (1e-3..1e5).contains(&value);
         let is_gap = |value: f64| value == 0.0 || !value.is_finite() || value >= 1e5;
         let (mut depths, mut others) = (0usize, 0usize);
@@ -177,7 +190,9 @@ fn integers(picture: &Picture, colours: usize) -> Option<Guess> {
         guesses.push((order.to_string(), picture.median(two) / 1000.0));
     }
     let is_neighbour = low.abs_diff(high) == 1 && low.max(high) < 3;
-    if colours == 3 && !equal && is_neighbour {
+    // Of 24 bits, only the high byte may be the same everywhere.
+    let may_be_three = varied == 3 || !picture.varies(if first_is_low { 2 } else { 0 });
+    if colours == 3 && !equal && is_neighbour && may_be_three {
         let weights = if first_is_low { [1.0, 256.0, 65_536.0] } else { [65_536.0, 256.0, 1.0] };
         let three = |pixel: &[u8]| (0..3).map(|at| weights[at] * f64::from(pixel[at])).sum();
         let median = picture.median(three);
@@ -208,10 +223,8 @@ fn constant(picture: &Picture, colours: usize, alpha: Option<usize>) -> Option<G
         let opaque = Some(*channel) == alpha && picture.bytes[*channel] == u8::MAX && colours == 3;
         *channel != low && picture.bytes[*channel] != 0 && !opaque
     })?;
-    let mut seen = [false; 256];
-    picture.pixels().for_each(|pixel| seen[usize::from(pixel[low])] = true);
     // The grey of a picture beside a constant opacity is the picture.
-    if seen.iter().filter(|seen| **seen).count() <= 8 || colours == 1 && low == 0 {
+    if picture.levels(low) <= MASK_LEVELS || colours == 1 && low == 0 {
         return None;
     }
     let order = if low < high { "bytes-low-high" } else { "bytes-high-low" };
