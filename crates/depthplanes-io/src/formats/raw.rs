@@ -8,7 +8,6 @@
 use super::format::{DecodeOptions, Format, Image};
 use super::samples::{Sample, pixels};
 use crate::error::{Error, Result};
-use crate::frame::Pixels;
 
 pub(super) const FORMAT: Format = Format {
     name: "raw",
@@ -137,24 +136,28 @@ fn by_length(bytes: &[u8], area: usize) -> Option<Type> {
 /// Whether the numbers can be a map: floats are 0, not finite, or of usual size, integers stay below 2^24.
 fn plausible(bytes: &[u8], (_, sample, big_endian): &Type) -> bool {
     let each = sample.bytes();
-    let step = (bytes.len() / each).div_ceil(1 << 16) * each;
-    let some: Vec<u8> = bytes.chunks_exact(step.max(each)).flat_map(|chunk| &chunk[..each]).copied().collect();
-    let is_float = matches!(sample, Sample::F32 | Sample::F64);
-    let fits = |value: f64| {
-        if is_float {
-            value == 0.0 || !value.is_finite() || (1e-4..1e7).contains(&value.abs())
-        } else {
-            value < f64::from(1 << 24)
+    let every = (bytes.len() / each).div_ceil(1 << 16).max(1);
+    let (mut some, mut fitting, mut finite) = (0usize, 0usize, 0usize);
+    for chunk in bytes.chunks_exact(each).step_by(every) {
+        let mut little = [0; 8];
+        little[..each].copy_from_slice(chunk);
+        if *big_endian {
+            little[..each].reverse();
         }
-    };
-    let values: Vec<f64> = match pixels(&some, *sample, *big_endian, &mut Vec::new()) {
-        Pixels::F32(values) => values.into_iter().map(f64::from).collect(),
-        Pixels::U16(values) => values.into_iter().map(f64::from).collect(),
-        Pixels::U8(values) => values.into_iter().map(f64::from).collect(),
-    };
-    let finite = values.iter().filter(|value| value.is_finite()).count();
-    let fitting = values.iter().filter(|value| fits(**value)).count();
-    fitting * 100 >= values.len() * 98 && finite > 0
+        let low = [little[0], little[1], little[2], little[3]];
+        let value = match sample {
+            Sample::F32 => f64::from(f32::from_le_bytes(low)),
+            Sample::F64 => f64::from_le_bytes(little),
+            Sample::I32 => f64::from(i32::from_le_bytes(low)),
+            _ => f64::from(u32::from_le_bytes(low)),
+        };
+        let is_float = matches!(sample, Sample::F32 | Sample::F64);
+        let usual = value == 0.0 || !value.is_finite() || (1e-4..1e7).contains(&value.abs());
+        some += 1;
+        finite += usize::from(value.is_finite());
+        fitting += usize::from(if is_float { usual } else { value < f64::from(1 << 24) });
+    }
+    fitting * 100 >= some * 98 && finite > 0
 }
 
 /// What to say of a size and type that the file has not.

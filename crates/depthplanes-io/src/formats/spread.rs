@@ -121,7 +121,7 @@ impl Picture<'_> {
             let moves = one[high] != two[high] || two[high] != three[high];
             if jumps && moves && [one, two, three].iter().all(|pixel| value(pixel) != 0) {
                 steps += 1;
-                carried += usize::from((value(one) - 2 * value(two) + value(three)).abs() < SMALL / 2);
+                carried += usize::from((value(one) - 2 * value(two) + value(three)).abs() < SMALL);
             }
         }
         is_most(carried, steps)
@@ -191,8 +191,8 @@ fn integers(picture: &Picture, colours: usize) -> Option<Guess> {
     }
     let is_neighbour = low.abs_diff(high) == 1 && low.max(high) < 3;
     // Of 24 bits, only the high byte may be the same everywhere.
-    let may_be_three = varied == 3 || !picture.varies(if first_is_low { 2 } else { 0 });
-    if colours == 3 && !equal && is_neighbour && may_be_three {
+    let may_be_three = || varied == 3 || !picture.varies(if first_is_low { 2 } else { 0 });
+    if colours == 3 && !equal && is_neighbour && may_be_three() {
         let weights = if first_is_low { [1.0, 256.0, 65_536.0] } else { [65_536.0, 256.0, 1.0] };
         let three = |pixel: &[u8]| (0..3).map(|at| weights[at] * f64::from(pixel[at])).sum();
         let median = picture.median(three);
