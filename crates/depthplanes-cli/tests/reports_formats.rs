@@ -50,7 +50,7 @@ fn values_spread_over_channels_are_named_with_the_encoding_first() {
         ("packed_grey_alpha.png", "bytes-low-high"),
     ] {
         let file = data.join("reports").join(file);
-        let error = bench.run(&["detect", file.to_str().unwrap()]).fails(1);
+        let error = bench.run(&["detect", file.to_str().unwrap()]).fails(2);
         assert!(
             error.contains("the bytes of one value") && error.contains(&format!("try --encoding {encoding}")),
             "{error}"

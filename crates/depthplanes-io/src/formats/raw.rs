@@ -163,11 +163,6 @@ fn plausible(bytes: &[u8], (_, sample, big_endian): &Type) -> bool {
 /// What to say of a size and type that the file has not.
 fn misfit(bytes: &[u8], (width, height): (usize, usize), sample: Option<Sample>) -> Error {
     let (length, area) = (bytes.len(), width * height);
-    if let Some(format) = super::sniff(bytes).ok().filter(|format| format.name != "rvl") {
-        let given = format!("{width}x{height}");
-        let accepted = format!("no size: the file is {}, which states its own; leave --raw-size out", format.name);
-        return Error::parameter("--raw-size", given, accepted);
-    }
     if sample.is_none() && length == 4 * area || length == 8 * area {
         let accepted = "one that is stated: the numbers are no depths as float32 or float64, nor integers below 2^24; try \
              float32, float32-be, uint32, int32 or float64";
