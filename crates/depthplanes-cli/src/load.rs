@@ -20,7 +20,8 @@ pub(crate) fn options(reading: &Reading) -> Outcome<ReadOptions> {
             limits: Limits { max_pixels: reading.max_pixels, max_bytes: reading.max_bytes },
             member: reading.member.clone(),
             raw_size: reading.raw_size,
-            luminance: false,
+            raw_type: reading.raw_type.clone(),
+            ..DecodeOptions::default()
         },
         preset: reading.preset.clone(),
         encoding: reading.encoding.clone(),

@@ -24,12 +24,15 @@ pub(crate) struct Choice {
 pub(crate) fn choose(
     image: &Image,
     format: &str,
-    stated: Option<&str>,
+    stated: Option<&'static Encoding>,
     disparity: bool,
     preset: Option<&SensorPreset>,
 ) -> Result<Choice> {
-    if let Some(name) = stated {
-        return Ok(Choice { encoding: encoding::by_name(name)?, why: "stated".into(), note: None });
+    if let Some(encoding) = stated {
+        return Ok(Choice { encoding, why: "stated".into(), note: None });
+    }
+    if let Some(encoding) = encoding::stated_by_file(image) {
+        return Ok(Choice { encoding, why: "the file's header states it".into(), note: None });
     }
     let Some(preset) = preset else {
         let (encoding, why) = encoding::likely(&image.pixels, image.width, format, disparity);

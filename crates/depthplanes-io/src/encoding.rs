@@ -1,8 +1,8 @@
 //! What a map's numbers mean: unit, bit packing, the value for "missing".
 //!
 //! In: an [`Image`] and what the user knows. Out: the same image, unpacked only where the encoding
-//! packs bits (`kinect-sdk`, `sun-rgbd`), and its [`Meaning`]. Integer maps otherwise keep the
-//! numbers that are in the file, because the paper's threshold counts grey levels.
+//! packs bits (`kinect-sdk`, `sun-rgbd`) or spreads bytes over channels (`packed.rs`), and its [`Meaning`]. Integer maps
+//! otherwise keep the numbers that are in the file, because the paper's threshold counts grey levels.
 //!
 //! Without a stated encoding [`likely`] decides by the sample type:
 //! PFM -> `middlebury` (or `millimetre` if the median is above the number of columns), float -> `metre` (or `millimetre`
@@ -12,8 +12,9 @@
 use depthplanes::Measure;
 
 use crate::error::{Error, Result};
-use crate::formats::Image;
+use crate::formats::{self, Image};
 use crate::frame::Pixels;
+use crate::packed::{self, Packing};
 pub use crate::stereo::Stereo;
 
 /// What the user says beside the encoding's name.
@@ -51,6 +52,8 @@ pub struct Encoding {
     pub missing: Option<f64>,
     /// Whether the values are disparities, which need a [`Stereo`] rig to become metres.
     pub disparity: bool,
+    /// Whether a value is spread over the channels of a picture.
+    pub channels: bool,
     /// Unpacks the image and explains it.
     pub apply: fn(&mut Image, &Given) -> Result<Meaning>,
 }
@@ -63,6 +66,7 @@ const DEPTH: Encoding = Encoding {
     scale: "map units per metre, 1000",
     missing: None,
     disparity: false,
+    channels: false,
     apply: |image, given| depth(image, given.scale.unwrap_or(1000.0)),
 };
 
@@ -74,8 +78,12 @@ const DISPARITY: Encoding = Encoding {
     scale: "map units per pixel of disparity, 1",
     missing: None,
     disparity: true,
+    channels: false,
     apply: |image, given| disparity(image, given, given.scale.unwrap_or(1.0)),
 };
+
+/// Bytes of millimetres in several channels.
+const SPREAD: Encoding = Encoding { channels: true, ..DEPTH };
 
 /// All encodings.
 pub const ENCODINGS: &[Encoding] = &[
@@ -164,6 +172,70 @@ pub const ENCODINGS: &[Encoding] = &[
         ..DEPTH
     },
     Encoding {
+        name: "compressed-depth",
+        aliases: &["ros-32fc1"],
+        about: "quantised inverse depth of a ROS 32FC1 compressedDepth topic, by A and B of its header",
+        unit: "quantised 1/m",
+        scale: "",
+        apply: quantised,
+        ..DEPTH
+    },
+    Encoding {
+        name: "bytes-high-low",
+        aliases: &["rgb16-high-low"],
+        about: "16-bit millimetres in two channels (R and G, grey and opacity ...), high byte first",
+        apply: |image, given| spread("bytes-high-low", image, given, Packing::TwoBytes { high_first: true }),
+        ..SPREAD
+    },
+    Encoding {
+        name: "bytes-low-high",
+        aliases: &["rgb16-low-high"],
+        about: "16-bit millimetres in two channels, low byte first",
+        apply: |image, given| spread("bytes-low-high", image, given, Packing::TwoBytes { high_first: false }),
+        ..SPREAD
+    },
+    Encoding {
+        name: "rgb24-high-low",
+        aliases: &["rgb24-big-endian"],
+        about: "24-bit millimetres, R * 65536 + G * 256 + B; Google Brain robot data with a scale of 256000",
+        apply: |image, given| spread("rgb24-high-low", image, given, Packing::ThreeBytes { high_first: true }),
+        ..SPREAD
+    },
+    Encoding {
+        name: "rgb24-low-high",
+        aliases: &["rgb24-little-endian"],
+        about: "24-bit millimetres, R + G * 256 + B * 65536",
+        apply: |image, given| spread("rgb24-low-high", image, given, Packing::ThreeBytes { high_first: false }),
+        ..SPREAD
+    },
+    Encoding {
+        name: "rgb24-carla",
+        aliases: &["carla"],
+        about: "CARLA: R + G * 256 + B * 65536 as a part of 1000 m; the farthest 0.1 % is the sky",
+        unit: "far plane / (2^24 - 1)",
+        scale: "distance of the far plane in metres, 1000",
+        apply: carla,
+        ..SPREAD
+    },
+    Encoding {
+        name: "rgba-float-little-endian",
+        aliases: &["rgba-float"],
+        about: "32-bit float in the bytes of R, G, B and opacity, the lowest byte in R: depth in metres",
+        unit: "m",
+        scale: "map units per metre, 1",
+        apply: |image, given| float_bytes("rgba-float-little-endian", image, given, false),
+        ..SPREAD
+    },
+    Encoding {
+        name: "rgba-float-big-endian",
+        aliases: &[],
+        about: "32-bit float in the bytes of R, G, B and opacity, the lowest byte in opacity: depth in metres",
+        unit: "m",
+        scale: "map units per metre, 1",
+        apply: |image, given| float_bytes("rgba-float-big-endian", image, given, true),
+        ..SPREAD
+    },
+    Encoding {
         name: "grey",
         aliases: &["gray"],
         about: "grey levels of unknown unit: planes in pixels, no metres",
@@ -212,6 +284,11 @@ pub fn likely(pixels: &Pixels, width: usize, format: &str, disparity: bool) -> (
         Pixels::U8(_) => ("grey", "8-bit maps have no common unit".to_string()),
     };
     (by_name(name).expect("a name of the table"), why)
+}
+
+/// The encoding that a file itself states.
+pub fn stated_by_file(image: &Image) -> Option<&'static Encoding> {
+    image.quantisation.map(|_| by_name("compressed-depth").expect("a name of the table"))
 }
 
 /// The median of at most 4096 positive values.
@@ -287,6 +364,35 @@ fn unpacked(name: &'static str, image: &mut Image, given: &Given, unpack: fn(u16
     no_scale(name, given)?;
     sixteen_bits(name, image)?.iter_mut().for_each(|value| *value = unpack(*value));
     depth(image, 1000.0)
+}
+
+/// Millimetres from several channels.
+fn spread(name: &'static str, image: &mut Image, given: &Given, packing: Packing) -> Result<Meaning> {
+    packed::unpack(name, image, packing)?;
+    depth(image, given.scale.unwrap_or(1000.0))
+}
+
+fn float_bytes(name: &'static str, image: &mut Image, given: &Given, big_endian: bool) -> Result<Meaning> {
+    packed::unpack(name, image, Packing::Float { big_endian })?;
+    depth(image, given.scale.unwrap_or(1.0))
+}
+
+/// CARLA's depth camera (carla.readthedocs.io, "Sensors reference"): a part of the far plane's distance.
+fn carla(image: &mut Image, given: &Given) -> Result<Meaning> {
+    const LARGEST: f64 = 16_777_215.0;
+    packed::unpack("rgb24-carla", image, Packing::ThreeBytes { high_first: false })?;
+    let far_m = positive_scale(given.scale.unwrap_or(1000.0))?;
+    Ok(Meaning { measure: Measure::depth(far_m / LARGEST)?, valid_range: Some((0.0, 0.999 * LARGEST)) })
+}
+
+/// `z = A / (value - B)` (compressed_depth_image_transport), 0 = missing.
+fn quantised(image: &mut Image, given: &Given) -> Result<Meaning> {
+    no_scale("compressed-depth", given)?;
+    let Some([a, b]) = image.quantisation else {
+        let accepted = "a compressedDepth payload whose header states A and B";
+        return Err(Error::parameter("--encoding", "compressed-depth", accepted));
+    };
+    Ok(Meaning { measure: formats::quantised_inverse_depth(a, b)?, valid_range: None })
 }
 
 fn sixteen_bits<'a>(name: &'static str, image: &'a mut Image) -> Result<&'a mut Vec<u16>> {

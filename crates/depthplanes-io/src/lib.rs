@@ -17,6 +17,7 @@ pub mod labels;
 pub mod memory;
 pub mod noise_table;
 pub mod outputs;
+mod packed;
 pub mod presets;
 mod ray_distance;
 pub mod read;

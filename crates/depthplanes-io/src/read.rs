@@ -10,7 +10,7 @@ use depthplanes::{Intrinsics, Sensor};
 
 use crate::camera_file::CameraFile;
 use crate::choice::{Choice, choose};
-use crate::encoding::{Encoding, Given, Meaning, Stereo};
+use crate::encoding::{self, Encoding, Given, Meaning, Stereo};
 use crate::error::{Error, Result};
 use crate::file_bytes::{self, read_known};
 use crate::formats::{self, DecodeOptions, Image};
@@ -107,12 +107,14 @@ pub fn decode(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Frame> 
 
 fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
     let preset = options.preset.as_deref().map(presets::by_name).transpose()?;
-    let (mut image, format) = formats::decode(bytes, &options.decode)?;
+    let by_user = options.encoding.as_deref().map(encoding::by_name).transpose()?;
+    let channels = by_user.is_some_and(|encoding| encoding.channels);
+    let (mut image, format) = formats::decode(bytes, &DecodeOptions { channels, ..options.decode.clone() })?;
     if options.swap_bytes {
         swap_bytes(&mut image)?;
     }
     let disparity = options.disparity || options.stereo.is_some();
-    let Choice { encoding, why, note } = choose(&image, format.name, options.encoding.as_deref(), disparity, preset)?;
+    let Choice { encoding, why, note } = choose(&image, format.name, by_user, disparity, preset)?;
     image.warnings.extend(note);
     if options.disparity && !encoding.disparity {
         let accepted = "an encoding of disparity (disparity, kitti, middlebury), or leave --disparity out";
@@ -122,7 +124,8 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
     let meaning = (encoding.apply)(&mut image, &Given { scale, stereo: options.stereo })?;
     let intrinsics = camera(options, preset, &mut image)?;
     let of_preset = |part: fn(&SensorPreset) -> Option<PresetNoise>| part(preset?)?.of();
-    let missing = missing(options, &image)?.or(preset.and_then(|preset| preset.missing)).or(encoding.missing);
+    let of_preset_or_file = preset.and_then(|preset| preset.missing).or(image.missing);
+    let missing = missing(options, &image)?.or(of_preset_or_file).or(encoding.missing);
     let missing = missing.filter(|value| storable(&image.pixels, *value)).or_else(|| {
         let (value, note) = not_measured(&image.pixels, meaning.measure).filter(|_| options.valid_range.is_none())?;
         image.warnings.push(note);

@@ -134,6 +134,8 @@ fn lying_arrays() -> Vec<Case> {
         "2, 2",
         "(2, 2",
         "(1, 2, 2, 2, 1)",
+        "(18446744073709551615, 5, 7)",
+        "(0, 5, 7)",
     ] {
         cases.push(case(&format!("npy of shape {shape}"), npy("<u2", false, shape, &[0; 6])));
     }
@@ -205,6 +207,8 @@ fn lying_pictures() -> Vec<Case> {
         let name = format!("png of {width} x {height}, depth {depth}, colour {color}");
         cases.push((name, raw_png(width, height, depth, color, b"\x78\x9c\x03\0\0\0\0\x01")));
     }
+    let halves: Vec<u8> = (0..35u8).flat_map(|at| [at, at ^ 0x55, 255 - at]).collect();
+    cases.push(case("png of spread bytes", png(7, 5, ColorType::Rgb, BitDepth::Eight, &halves)));
     cases.push(case("png of noise", raw_png(7, 5, 16, 0, &[0x55; 40])));
     cases.push(case("png colourised", png(1, 1, ColorType::Rgb, BitDepth::Eight, &[1, 2, 3])));
     let rows: Vec<Vec<u8>> = (0..5).map(|_| vec![9; 7]).collect();

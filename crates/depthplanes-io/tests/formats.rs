@@ -165,7 +165,7 @@ fn npy_clouds_give_their_z_and_pictures_are_refused() {
     assert_eq!((cloud.pixels, cloud.warnings.len()), (Pixels::F32(vec![2.0, 5.0, 8.0, 11.0]), 1));
     let columns = read(&npy("<f4", true, "(2, 2, 3)", &xyz)).unwrap();
     assert_eq!(columns.pixels, Pixels::F32(vec![8.0, 10.0, 9.0, 11.0]));
-    assert!(wrong(&npy("|u1", false, "(2, 2, 3)", &[0; 12])).contains("colour"));
+    assert!(wrong(&npy("|u1", false, "(2, 2, 3)", &[1, 2, 3, 1, 2, 3, 1, 2, 3, 4, 4, 5])).contains("colour"));
 }
 
 #[test]
@@ -275,4 +275,170 @@ fn limits_hold_for_every_format() {
     let array = zip(&[("a.npy", npy("|u1", false, "(2000, 2000)", &vec![0; 4_000_000]))], true);
     assert!(array.len() < 20_000 && read(&array).is_ok());
     assert!(refused(&array, Limits { max_bytes: 1 << 20, ..Default::default() }));
+}
+
+#[test]
+fn headerless_samples_of_every_type() {
+    let values = [0.0, 1.5, 2.25, 3.0, 4.0, 100.0];
+    let read = |bytes: &[u8], raw_type: Option<&str>, size| {
+        let options =
+            DecodeOptions { raw_size: Some(size), raw_type: raw_type.map(str::to_string), ..Default::default() };
+        decode(bytes, &options).map(|(image, _)| image)
+    };
+    let of = |little: &dyn Fn(f64) -> Vec<u8>| values.iter().flat_map(|value| little(*value)).collect::<Vec<u8>>();
+    let little32 = of(&|value| (value as f32).to_le_bytes().to_vec());
+    let big32 = of(&|value| (value as f32).to_be_bytes().to_vec());
+    let little64 = of(&|value| value.to_le_bytes().to_vec());
+    let big64 = of(&|value| value.to_be_bytes().to_vec());
+    for (bytes, name, others) in [
+        (&little32, "float32", ["float32", "f32", "<f4"]),
+        (&big32, "float32-be", ["float32-be", "f32be", ">f4"]),
+        (&little64, "float64", ["float64", "f64", "f8"]),
+        (&big64, "float64-be", ["float64-be", "f64-be", ">f8"]),
+    ] {
+        let guessed = read(bytes, None, (3, 2)).unwrap();
+        assert_eq!(as_f64(&guessed.pixels), values, "{name}");
+        assert!(guessed.warnings[0].contains(&format!("read as {name};")), "{:?}", guessed.warnings);
+        for stated in others {
+            let image = read(bytes, Some(stated), (3, 2)).unwrap();
+            assert_eq!((as_f64(&image.pixels), image.warnings), (values.to_vec(), vec![]), "{stated}");
+        }
+    }
+    let millimetres = [0u32, 1500, 2250, 70_000, 4000, 100];
+    let integers: Vec<u8> = millimetres.iter().flat_map(|value| value.to_le_bytes()).collect();
+    let image = read(&integers, None, (3, 2)).unwrap();
+    assert_eq!(as_f64(&image.pixels), millimetres.map(f64::from));
+    assert!(image.warnings[0].contains("read as uint32"), "{:?}", image.warnings);
+    assert_eq!(read(&[1, 2, 3, 4, 5, 6], None, (3, 2)).unwrap().pixels, Pixels::U8(vec![1, 2, 3, 4, 5, 6]));
+    let swapped = read(&[1, 2, 3, 4], Some("uint16-be"), (2, 1)).unwrap();
+    assert_eq!(swapped.pixels, Pixels::U16(vec![0x102, 0x304]));
+    let noise: Vec<u8> = (0..24u32).map(|i| (i * 7919 % 251) as u8).collect();
+    let error = read(&noise, None, (3, 2)).unwrap_err().to_string();
+    assert!(error.contains("float32") && error.contains("--raw-type"), "{error}");
+    let error = read(&noise, Some("float33"), (3, 2)).unwrap_err().to_string();
+    assert!(error.contains("float33") && error.contains("float64-be"), "{error}");
+}
+
+#[test]
+fn headerless_files_of_another_size_name_those_that_fit() {
+    let wrong = |bytes: usize, size, raw_type: Option<&str>| {
+        let options =
+            DecodeOptions { raw_size: Some(size), raw_type: raw_type.map(str::to_string), ..Default::default() };
+        decode(&vec![0x41; bytes], &options).unwrap_err().to_string()
+    };
+    assert!(wrong(2 * 640 * 480, (480, 360), None).contains("640x480 (2 bytes a pixel)"));
+    assert!(wrong(4 * 256 * 192, (320, 240), None).contains("256x192 (4 bytes a pixel)"));
+    assert!(wrong(2 * 848 * 480, (640, 480), Some("u16")).contains("848x480 (2 bytes a pixel) fits"));
+    let header = wrong(2 * 320 * 240 + 54, (320, 240), None);
+    assert!(header.contains("54 bytes more") && header.contains("tail -c +55"), "{header}");
+    let options = DecodeOptions { raw_size: Some((9, 9)), ..Default::default() };
+    let error = decode(&pgm(&depth()), &options).unwrap_err().to_string();
+    assert!(error.contains("the file is pnm") && error.contains("leave --raw-size out"), "{error}");
+}
+
+#[test]
+fn stacks_of_maps_and_arrays_of_other_numbers() {
+    let bytes: Vec<u8> = (1..=24).collect();
+    let member_of = |shape: &str, fortran, member: Option<&str>| {
+        let options = DecodeOptions { member: member.map(str::to_string), ..Default::default() };
+        decode(&npy("|u1", fortran, shape, &bytes), &options).map(|(image, _)| image)
+    };
+    let second = member_of("(2, 2, 6)", false, Some("1")).unwrap();
+    assert_eq!((second.width, second.pixels), (6, Pixels::U8((13..=24).collect())));
+    assert!(second.warnings[0].contains("map 1 of 2"), "{:?}", second.warnings);
+    let columns = member_of("(2, 2, 6)", true, Some("0")).unwrap();
+    assert_eq!(columns.pixels, Pixels::U8(vec![1, 5, 9, 13, 17, 21, 3, 7, 11, 15, 19, 23]));
+    for member in [None, Some("2"), Some("-1"), Some("depth")] {
+        let error = member_of("(2, 2, 6)", false, member).unwrap_err().to_string();
+        assert!(error.contains("0 to 1") && error.contains("--member"), "{error}");
+    }
+    for (descr, said) in [
+        ("|O", "pickled"),
+        ("<c8", "complex"),
+        ("|b1", "a mask"),
+        ("<U4", "text"),
+        ("<M8[ns]", "no numbers that are read"),
+    ] {
+        let error = wrong(&npy(descr, false, "(2, 2)", &[0; 64]));
+        assert!(error.contains(said), "{error}");
+    }
+    let structured = npy("|u1", false, "(2, 2)", &[0; 64]);
+    let at = structured.windows(5).position(|window| window == b"'|u1'").unwrap();
+    let text =
+        [&structured[10..at], b"[('z', '<f4'), ('c', '|u1')]", &structured[at + 5..structured.len() - 64]].concat();
+    let length = (text.len() as u16).to_le_bytes();
+    let error = wrong(&[&structured[..8], &length, &text, &[0; 64]].concat());
+    assert!(error.contains("a structured array"), "{error}");
+    let beyond: Vec<u8> = [1e300f64, 2.0].iter().flat_map(|value| value.to_le_bytes()).collect();
+    let image = read(&npy("<f8", false, "(1, 2)", &beyond)).unwrap();
+    assert!(image.warnings[0].contains("1 values beyond 3.4e38"), "{:?}", image.warnings);
+}
+
+#[test]
+fn compressed_depth_is_inverse_depth_where_its_header_says_so() {
+    use depthplanes_io::{ReadOptions, decode};
+    let depths = [0.5, 1.0, 2.0, 4.0, 8.0];
+    for (quantum, farthest) in [(100.0f64, 10.0), (100.0, 100.0), (20.0, 9.0)] {
+        let (a, b) = (quantum * (quantum + 1.0), 1.0 - quantum * (quantum + 1.0) / farthest);
+        let values: Vec<u16> = (0..35).map(|at| (a / depths[at % 5] + b) as u16).collect();
+        let bytes = [config_header(a as f32, b as f32), rvl(7, 5, &values)].concat();
+        let frame = decode(&bytes, "map", &ReadOptions::default()).unwrap();
+        assert_eq!(frame.encoding, "compressed-depth");
+        assert!(frame.warnings[0].contains("--encoding millimetre"), "{:?}", frame.warnings);
+        for (value, depth) in values.iter().zip(depths) {
+            let read = frame.sensor.measure.depth_m(f64::from(*value)).unwrap();
+            // The value is cut to a whole number, by less than 1.
+            assert!((1.0 / read - 1.0 / depth).abs() < 1.0 / a, "{read} is not {depth}");
+        }
+        let preset = ReadOptions { preset: Some("kinect1".into()), ..Default::default() };
+        assert_eq!(decode(&bytes, "map", &preset).unwrap().encoding, "compressed-depth");
+        let stated = ReadOptions { encoding: Some("mm".into()), ..Default::default() };
+        assert_eq!(decode(&bytes, "map", &stated).unwrap().encoding, "millimetre");
+    }
+    // What memory held: nothing, tiny, huge, not a number, and numbers that make no depths.
+    for (a, b) in [(0.0, 0.0), (4.6e-41, 0.0), (1e30, -1e30), (f32::NAN, 1.0), (1.0, 0.0), (-10_100.0, -1009.0)] {
+        let bytes = [config_header(a, b), rvl(7, 5, &depth())].concat();
+        let frame = decode(&bytes, "map", &ReadOptions::default()).unwrap();
+        assert_eq!(
+            (frame.encoding, frame.warnings.iter().any(|w| w.contains("32FC1"))),
+            ("millimetre", false),
+            "{a} {b}"
+        );
+        let stated = ReadOptions { encoding: Some("compressed-depth".into()), ..Default::default() };
+        assert!(decode(&bytes, "map", &stated).is_err());
+    }
+}
+
+#[test]
+fn files_of_other_kinds_are_named() {
+    let mut tar = vec![b'x'; 300];
+    tar[257..262].copy_from_slice(b"ustar");
+    for (start, name) in [
+        (&b"RIFF\x10\0\0\0WEBPVP8 "[..], "WebP"),
+        (b"\0\0\0\x18ftypheic\0\0\0\0", "HEIC"),
+        (b"\0\0\0\x1cftypavif\0\0\0\0", "AVIF"),
+        (b"\0\0\0\x20ftypisom\0\0\x02\0", "MP4"),
+        (b"GIF89a....", "GIF"),
+        (b"\x89HDF\r\n\x1a\n", "HDF5"),
+        (b"MATLAB 5.0 MAT-file", "MATLAB"),
+        (b"ply\nformat ascii 1.0\n", "PLY"),
+        (b"LASF\0\0\0\0", "LAS"),
+        (b"#ROSBAG V2.0\n", "ROS 1 bag"),
+        (b"SQLite format 3\0", "ROS 2"),
+        (b"\x89MCAP0\r\n", "MCAP"),
+        (b"\x80\x04\x95\x10\0\0\0", "pickle"),
+        (b"%PDF-1.4\n", "PDF"),
+        (b"\n <!DOCTYPE HTML><html>404", "web page"),
+        (b"version https://git-lfs.github.com/spec/v1\noid", "git lfs pull"),
+        (b"\x28\xb5\x2f\xfd....", "zstd"),
+        (b"\xfd7zXZ\0....", "xz"),
+        (b"{\"fx\": 500}", "--camera"),
+        (b"1.5 2.5 3.5\n1.5 2.5 3.5\n", "numpy.loadtxt"),
+        (b"P7\nWIDTH 2\n", "PAM"),
+        (&tar, "tar"),
+    ] {
+        let error = wrong(start);
+        assert!(error.contains(name), "{name}: {error}");
+        assert!(error.contains("a depth map"), "{name}: {error}");
+    }
 }

@@ -4,6 +4,7 @@
 mod common;
 
 use common::*;
+use depthplanes_io::encoding::ENCODINGS;
 use depthplanes_io::formats::{DecodeOptions, FORMATS, Limits};
 use depthplanes_io::{ReadOptions, camera_file, decode, inspect};
 use proptest::prelude::*;
@@ -21,11 +22,49 @@ fn read_all(bytes: &[u8]) {
         let summary = inspect::summary(&frame, 10).unwrap();
         assert!(summary.missing >= 0.0 && summary.missing <= 1.0);
     }
+    for encoding in ENCODINGS.iter().filter(|encoding| encoding.channels) {
+        let stated = ReadOptions { encoding: Some(encoding.name.into()), ..options.clone() };
+        if let Ok(frame) = decode(bytes, "random", &stated) {
+            assert!(frame.view().is_ok());
+        }
+    }
+    for (raw_type, each) in [(None, 4), (Some("float64-be"), 8), (Some("int16"), 2)] {
+        let raw_size = Some((bytes.len() / each, 1));
+        let raw_type = raw_type.map(str::to_string);
+        let stated = DecodeOptions { raw_size, raw_type, ..options.decode.clone() };
+        let _ = depthplanes_io::formats::decode(bytes, &stated);
+    }
     for format in FORMATS {
+        let stated = DecodeOptions { channels: true, member: Some("1".into()), ..options.decode.clone() };
+        if let Ok(image) = (format.decode)(bytes, &stated) {
+            assert!(image.width * image.height <= options.decode.limits.max_pixels, "{}", format.name);
+        }
         if let Ok(image) = (format.decode)(bytes, &options.decode) {
             assert!(image.width * image.height <= options.decode.limits.max_pixels, "{}", format.name);
         }
     }
+}
+
+/// Files of several channels, planes and pages.
+fn channelled_files() -> Vec<(&'static str, &'static str, Vec<u8>)> {
+    let bytes: Vec<u8> = (0..140).map(|at| (at * 37 % 256) as u8).collect();
+    let rgba = png(7, 5, png::ColorType::Rgba, png::BitDepth::Eight, &bytes);
+    let mut files = vec![("png", "RGBA", rgba), ("npy", "stack", npy("|u1", false, "(4, 5, 7)", &bytes))];
+    if cfg!(feature = "tiff") {
+        let page = TiffPage {
+            width: 7,
+            height: 5,
+            sample: (8, 1),
+            channels: 3,
+            tags: vec![(262, 2), (284, 2)],
+            no_data: Some("7"),
+            data: bytes[..105].to_vec(),
+        };
+        let white = TiffPage { channels: 1, tags: vec![(262, 0)], data: bytes[..35].to_vec(), ..page.clone() };
+        files.push(("tiff", "planes", tiff_by_hand(&[page, white.clone()], true)));
+        files.push(("tiff", "0 is white", tiff_by_hand(&[white], false)));
+    }
+    files
 }
 
 proptest! {
@@ -40,7 +79,7 @@ proptest! {
 
     #[test]
     fn valid_files_with_some_bytes_changed(file in 0..64usize, changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8)) {
-        let files = valid_files();
+        let files = [valid_files(), channelled_files()].concat();
         let (_, _, mut bytes) = files[file % files.len()].clone();
         for (at, value) in changes {
             let at = at.index(bytes.len());

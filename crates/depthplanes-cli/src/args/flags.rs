@@ -42,6 +42,7 @@ pub(crate) struct Reading {
     pub(crate) missing: Option<f64>,
     pub(crate) valid_range: Option<[f64; 2]>,
     pub(crate) raw_size: Option<(usize, usize)>,
+    pub(crate) raw_type: Option<String>,
     pub(crate) member: Option<String>,
     pub(crate) max_pixels: usize,
     pub(crate) max_bytes: usize,
@@ -85,6 +86,7 @@ impl Reading {
             max_bytes: *matches.get_one("max-bytes").expect("it has a default"),
             valid_range: matches.get_one("valid-range").copied(),
             raw_size: matches.get_one("raw-size").copied(),
+            raw_type: text("raw-type"),
             member: text("member"),
             words: words_given(matches),
         }
@@ -139,7 +141,13 @@ pub(super) fn reading() -> Vec<Arg> {
         number("baseline", "METRES").help("Baseline of the stereo rig"),
         number("doffs", "PIXELS").help("Difference of the two principal points (Middlebury's doffs)"),
         Arg::new("raw-size").value_name("WxH").value_parser(size).help("Size of a headerless file"),
-        Arg::new("member").value_name("NAME").help("The array to read from a file that holds several"),
+        Arg::new("raw-type").value_name("TYPE").requires("raw-size").help(
+            "Sample type of a headerless file in numpy's words, such as uint16, uint16-be or float32; without it the \
+             length of the file decides",
+        ),
+        Arg::new("member")
+            .value_name("NAME")
+            .help("Which of several maps: the array's name (NPZ), its index (NPY), the page (TIFF)"),
         switch("swap-bytes", "Swap the two bytes of 16-bit samples"),
         limit("max-pixels", MAX_PIXELS)
             .help("Refuse larger maps; `planar` needs 24 bytes of memory a pixel, with all outputs 64"),

@@ -3,8 +3,8 @@
 //! In: a BMP file, bottom-up or top-down. Out: `u8` values: the palette's grey, not its index.
 
 use super::bytes::Cursor;
+use super::channels::reduce;
 use super::format::{DecodeOptions, Format, Image};
-use super::samples::single_channel;
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
 
@@ -94,16 +94,18 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
             push_palette_row(row, width, &header, &palette, &mut samples)?;
         }
     }
-    let mut warnings = Vec::new();
-    let grey = if options.luminance {
-        samples.chunks_exact(channels).map(luminance).collect()
-    } else {
-        single_channel("bmp", samples, channels, channels == 4, &mut warnings)?
-    };
-    if header.bits <= 8 {
-        warnings.clear(); // A grey palette is the ordinary way to store one channel.
+    if options.luminance {
+        let grey = samples.chunks_exact(channels).map(luminance).collect();
+        return Ok(Image::new(width, height, Pixels::U8(grey), "uint8", Vec::new()));
     }
-    Ok(Image { width, height, pixels: Pixels::U8(grey), sample: "uint8", warnings })
+    samples.chunks_exact_mut(channels).for_each(|pixel| pixel.swap(0, 2)); // Blue comes first in the file.
+    let image = Image::new(width, height, Pixels::U8(samples), "uint8", Vec::new());
+    let mut image = Image { channels, ..image };
+    reduce("bmp", &mut image, channels == 4, options)?;
+    if header.bits <= 8 {
+        image.warnings.clear(); // A grey palette is the ordinary way to store one channel.
+    }
+    Ok(image)
 }
 
 /// Of blue, green and red, as of standard-definition television (ITU-R BT.601).

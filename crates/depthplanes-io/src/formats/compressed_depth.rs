@@ -2,8 +2,12 @@
 //!
 //! In: the header (`i32` format, `f32` A, `f32` B, little-endian) and its picture. Out: `u16` values
 //! as stored. Of a 16UC1 topic these are millimetres; of a 32FC1 topic they are inverse depth by
-//! A and B ([`inverse_depth_measure`]). The payload cannot say which of the two it is, only the
-//! message's format string can: 16UC1 leaves A and B unset.
+//! A and B ([`quantised_inverse_depth`]).
+//!
+//! The message's format string, which says which of the two it is, is not in the payload. Upstream
+//! (compressed_depth_image_transport) sets A and B for 32FC1 alone, as `A = q (q + 1)` and `B = 1 - A / farthest` with
+//! `q` of 1 to 150 and a farthest depth of 1 to 100 m; 16UC1 leaves whatever memory held, mostly 0 or a tiny
+//! number. So they are taken where both are numbers that make depths of all the values, within wider bounds.
 
 use depthplanes::Measure;
 
@@ -11,6 +15,7 @@ use super::bytes::Cursor;
 use super::format::{DecodeOptions, Format, Image};
 use super::{png, rvl};
 use crate::error::{Error, Result};
+use crate::frame::Pixels;
 
 pub(super) const FORMAT: Format = Format {
     name: "compressed-depth",
@@ -40,7 +45,36 @@ fn unreadable(wrong: &str) -> Error {
 
 fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
     let (picture, format) = picture(bytes).ok_or_else(|| unreadable("no PNG or RVL behind the header"))?;
-    (format.decode)(picture, options)
+    let mut image = (format.decode)(picture, options)?;
+    let [a, b] = parameters(bytes).ok_or_else(|| unreadable("fewer than 12 bytes"))?;
+    if explains(a, b, &image.pixels) {
+        image.quantisation = Some([a, b]);
+        image.warnings.push(format!(
+            "read as a 32FC1 topic: quantised inverse depth by the header's A = {a} and B = {b}; if the topic is 16UC1, \
+             state --encoding millimetre"
+        ));
+    }
+    Ok(image)
+}
+
+/// A and B of the header.
+fn parameters(bytes: &[u8]) -> Option<[f64; 2]> {
+    let mut cursor = Cursor::new(bytes, 4);
+    let mut float = || cursor.u32().map(|bits| f64::from(f32::from_bits(bits)));
+    Some([float()?, float()?])
+}
+
+/// Whether A and B make depths of all the values.
+fn explains(a: f64, b: f64, pixels: &Pixels) -> bool {
+    let Pixels::U16(values) = pixels else { return false };
+    let farthest_m = a / (1.0 - b); // Of the value 1; 0 is missing.
+    let depths_m = 0.01..=1000.0;
+    let nearest_m = |largest: u16| a / (f64::from(largest) - b);
+    a.is_finite()
+        && b.is_finite()
+        && (1.0..=1e6).contains(&a)
+        && depths_m.contains(&farthest_m)
+        && values.iter().max().is_some_and(|largest| *largest > 0 && depths_m.contains(&nearest_m(*largest)))
 }
 
 /// What the numbers of a 32FC1 `compressedDepth` payload mean: upstream restores
@@ -49,9 +83,15 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
 /// # Errors
 /// [`Error::Unreadable`] if the header is short or A and B are not usable: a 16UC1 payload.
 pub fn inverse_depth_measure(bytes: &[u8]) -> Result<Measure> {
-    let mut cursor = Cursor::new(bytes, 4);
-    let mut float = || cursor.u32().map(|bits| f64::from(f32::from_bits(bits)));
-    let (a, b) = float().zip(float()).ok_or_else(|| unreadable("fewer than 12 bytes"))?;
+    let [a, b] = parameters(bytes).ok_or_else(|| unreadable("fewer than 12 bytes"))?;
+    quantised_inverse_depth(a, b)
+}
+
+/// What numbers mean that were quantised as `A / z + B`: `1/z = value / A - B / A`.
+///
+/// # Errors
+/// [`Error::Unreadable`] if A is not above 0, or A or B is not finite.
+pub fn quantised_inverse_depth(a: f64, b: f64) -> Result<Measure> {
     if !(a.is_finite() && a > 0.0 && b.is_finite()) {
         return Err(unreadable(&format!("A = {a}, B = {b} describe no inverse depth")));
     }

@@ -49,11 +49,21 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
         .map_err(unreadable)?;
     let layer = picture.layer_data;
     let channels = &layer.channel_data.list;
-    let named = |name: &str| channels.iter().find(|channel| channel.name.to_string().eq_ignore_ascii_case(name));
+    // Renderers put the layer's name in front: `ViewLayer.Depth.Z`.
+    let named = |name: &str| {
+        let is_named = |full: &str| full.rsplit('.').next().unwrap_or(full).eq_ignore_ascii_case(name);
+        channels.iter().find(|channel| is_named(&channel.name.to_string()))
+    };
     let only = || if channels.len() == 1 { channels.first() } else { None };
-    let channel = named("z").or_else(|| named("depth")).or_else(|| named("y")).or_else(only).ok_or_else(|| {
+    let depth = named("z").or_else(|| named("depth")).or_else(|| named("y")).or_else(|| named("v")).or_else(only);
+    let grey = || {
+        let [r, g, b] = [named("r")?, named("g")?, named("b")?];
+        (r.sample_data == g.sample_data && r.sample_data == b.sample_data).then_some(r)
+    };
+    let channel = depth.or_else(grey).ok_or_else(|| {
         let names: Vec<_> = channels.iter().map(|channel| channel.name.to_string()).collect();
-        unreadable(format!("its channels are {}", names.join(", ")))
+        let differing = if named("r").is_some() { ", which differ: a colour picture, not depth" } else { "" };
+        unreadable(format!("its channels are {}{differing}", names.join(", ").escape_debug()))
     })?;
     let (values, sample): (Vec<f32>, _) = match &channel.sample_data {
         FlatSamples::F16(values) => (values.iter().map(|value| value.to_f32()).collect(), "float16"),
@@ -64,6 +74,13 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
     if values.len() != width * height {
         return Err(unreadable("the channel is subsampled"));
     }
-    let warnings = if channels.len() > 1 { vec![format!("the channel `{}` is taken", channel.name)] } else { vec![] };
-    Ok(Image { width, height, pixels: Pixels::F32(values), sample, warnings })
+    let mut warnings = Vec::new();
+    if channels.len() > 1 {
+        let (name, count) = (channel.name.to_string(), channels.len());
+        warnings.push(format!("the channel `{}` of {count} is taken", name.escape_debug()));
+    }
+    if meta.headers.len() > 1 {
+        warnings.push(format!("the file has {} layers: the first is taken", meta.headers.len()));
+    }
+    Ok(Image::new(width, height, Pixels::F32(values), sample, warnings))
 }

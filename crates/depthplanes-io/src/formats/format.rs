@@ -52,10 +52,17 @@ impl Limits {
 pub struct DecodeOptions {
     /// What the file may ask for.
     pub limits: Limits,
-    /// The array to read from an `.npz` archive that holds several.
+    /// The map to read from a file that holds several: the name of an array (NPZ), the index along the first axis from 0
+    /// (NPY), the page from 1 (TIFF).
     pub member: Option<String>,
     /// Columns and rows of a headerless file; stating them selects the format `raw`.
     pub raw_size: Option<(usize, usize)>,
+    /// Sample type of a headerless file, such as `uint16` or `float32` ([`super::raw_types`]); without it the length of the
+    /// file decides.
+    pub raw_type: Option<String>,
+    /// Whether pixels of several channels are handed on as they are ([`Image::channels`]), for encodings that read them.
+    /// Otherwise channels that differ are refused.
+    pub channels: bool,
     /// Whether a colour bitmap (BMP) becomes its luminance instead of being refused: label images with a colour for each
     /// plane.
     pub luminance: bool,
@@ -70,10 +77,30 @@ pub struct Image {
     pub height: usize,
     /// The values, row by row, top row first.
     pub pixels: Pixels,
+    /// Values a pixel, one beside the other, colours as red, green, blue and opacity last. It is 1 unless
+    /// [`DecodeOptions::channels`] asks for all of them.
+    pub channels: usize,
     /// Sample type in the file, in numpy's words: `uint16`, `float32` ...
     pub sample: &'static str,
+    /// The value for "missing" that the file states.
+    pub missing: Option<f64>,
+    /// A and B of quantised inverse depth, `z = A / (value - B)`, if the file states them (ROS `compressedDepth`).
+    pub quantisation: Option<[f64; 2]>,
     /// What a person should know: channels dropped, numbers converted.
     pub warnings: Vec<String>,
+}
+
+impl Image {
+    /// A map of one value a pixel of which the file says no more.
+    pub(super) fn new(
+        width: usize,
+        height: usize,
+        pixels: Pixels,
+        sample: &'static str,
+        warnings: Vec<String>,
+    ) -> Self {
+        Image { width, height, pixels, channels: 1, sample, missing: None, quantisation: None, warnings }
+    }
 }
 
 /// One input format.

@@ -9,6 +9,7 @@
 
 mod bmp;
 mod bytes;
+mod channels;
 mod compressed_depth;
 #[cfg(feature = "exr")]
 mod exr;
@@ -24,12 +25,15 @@ mod pnm;
 mod raw;
 pub mod rvl;
 mod samples;
+mod spread;
 #[cfg(feature = "tiff")]
 mod tiff;
 mod unsupported;
 
-pub use compressed_depth::inverse_depth_measure;
+pub use compressed_depth::{inverse_depth_measure, quantised_inverse_depth};
 pub use format::{DecodeOptions, Format, Image, Limits};
+pub use raw::raw_types;
+pub(crate) use spread::bytes as bytes_of_channels;
 
 use crate::error::{Error, Result};
 
@@ -80,6 +84,18 @@ pub fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<(Image, &'static 
         let (given, limit) = (bytes.len() as u64, options.limits.max_bytes as u64);
         return Err(Error::Limit { what: "size of the file in bytes", given, limit });
     }
-    let format = if options.raw_size.is_some() { &raw::FORMAT } else { sniff(bytes)? };
-    Ok(((format.decode)(bytes, options)?, format))
+    let Some((width, height)) = options.raw_size else {
+        let format = sniff(bytes)?;
+        return Ok(((format.decode)(bytes, options)?, format));
+    };
+    // RVL has no signature that samples could not have.
+    let other = sniff(bytes).ok().filter(|format| format.name != rvl::FORMAT.name);
+    match ((raw::FORMAT.decode)(bytes, options), other) {
+        (Ok(image), _) => Ok((image, &raw::FORMAT)),
+        (Err(_), Some(format)) => {
+            let accepted = format!("no size: the file is {}, which states its own; leave --raw-size out", format.name);
+            Err(Error::parameter("--raw-size", format_args!("{width}x{height}"), accepted))
+        }
+        (Err(error), None) => Err(error),
+    }
 }

@@ -1,14 +1,16 @@
 //! NumPy arrays (`.npy`, format versions 1 to 3).
 //!
 //! In: an array of integers or floats of any byte order, two axes (rows, columns) beside axes of
-//! length 1, in C or Fortran order; or an organised cloud, floats of shape (rows, columns, 3), of
-//! which z is taken. Out: `u8`, `u16` or `f32` values by the rules of `samples`.
+//! length 1, in C or Fortran order; an organised cloud, floats of shape (rows, columns, 3), of
+//! which z is taken; integers or floats of two to four channels (rows, columns, channels); or a stack (maps, rows,
+//! columns), of which the option `member` says which one. Out: `u8`, `u16` or `f32` values by the rules of `samples`.
 //! The header is read here because all that is needed of it is three fields.
 
 use std::borrow::Cow;
 
 use super::bytes::Cursor;
-use super::format::{Format, Image, Limits};
+use super::channels::reduce;
+use super::format::{DecodeOptions, Format, Image};
 use super::samples::{Sample, pixels};
 use crate::error::{Error, Result};
 
@@ -17,7 +19,7 @@ pub(super) const FORMAT: Format = Format {
     about: "NumPy array of two axes, integers or floats",
     extensions: &["npy"],
     sniff: |bytes| bytes.starts_with(MAGIC),
-    decode: |bytes, options| decode("npy", bytes, &options.limits),
+    decode: |bytes, options| decode("npy", bytes, options),
 };
 
 const MAGIC: &[u8] = b"\x93NUMPY";
@@ -30,14 +32,17 @@ pub(super) struct Header {
     fortran: bool,
     pub(super) rows: u64,
     pub(super) columns: u64,
-    /// 1, or 3 for x, y, z.
+    /// 1, or 2 to 4: of floats, 3 are x, y, z.
     channels: u64,
+    /// Maps along the first axis.
+    maps: u64,
     data_at: usize,
 }
 
 fn unreadable(format: &'static str, wrong: impl Into<String>) -> Error {
     let accepted = "an array of two axes (rows, columns), uint8 to uint64, int8 to int64 or float16 to float64; or \
-         an organised cloud, floats of shape (rows, columns, 3)";
+         an organised cloud, floats of shape (rows, columns, 3); or one of a stack (maps, rows, columns), chosen by \
+         --member";
     Error::Unreadable { format, wrong: wrong.into(), accepted }
 }
 
@@ -61,16 +66,28 @@ pub(super) fn header(format: &'static str, bytes: &[u8]) -> Result<Header> {
         Ok(text[at + quoted.len()..].trim_start())
     };
     let descr = field("descr")?;
-    let (sample, big_endian) = dtype(descr).ok_or_else(|| {
-        unreadable(format, format!("dtype {}", descr.split(", '").next().unwrap_or("").escape_default()))
-    })?;
+    let (sample, big_endian) = dtype(descr).ok_or_else(|| unreadable(format, unknown_dtype(descr)))?;
     let fortran = field("fortran_order")?.starts_with("True");
-    let [rows, columns, channels] =
+    let [maps, rows, columns, channels] =
         shape(field("shape")?).map_err(|shape| unreadable(format, format!("shape {shape}")))?;
-    if channels != 1 && !matches!(sample, Sample::F32 | Sample::F64) {
-        return Err(unreadable(format, format!("three channels of {}: a colour picture, not depth", sample.name())));
-    }
-    Ok(Header { sample, big_endian, fortran, rows, columns, channels, data_at: preamble + length })
+    Ok(Header { sample, big_endian, fortran, maps, rows, columns, channels, data_at: preamble + length })
+}
+
+/// What an array holds whose numbers are not read.
+fn unknown_dtype(descr: &str) -> String {
+    let first = descr.split(", '").next().unwrap_or("").trim_end_matches(['\n', ' ', ',']);
+    let shown: String = first.chars().take(80).collect();
+    let what = match descr.trim_start_matches(['\'', '<', '>', '|', '=']).chars().next() {
+        _ if descr.starts_with('[') => "a structured array: save its field of depth, array['z']",
+        Some('O') => {
+            "Python objects, which are pickled: save the array itself, numpy.asarray(map, dtype=numpy.float32)"
+        }
+        Some('b') if !descr.contains("i1") => "true and false: a mask, not depth",
+        Some('c') => "complex numbers",
+        Some('U' | 'S') => "text",
+        _ => "no numbers that are read",
+    };
+    format!("dtype {}: {what}", shown.escape_debug())
 }
 
 /// `'<u2'` and its like.
@@ -94,9 +111,9 @@ fn dtype(descr: &str) -> Option<(Sample, bool)> {
     Some((sample, big_endian))
 }
 
-/// Rows, columns and channels (1 or 3) of a shape tuple, axes of length 1 dropped from the front,
+/// Maps, rows, columns and channels (1 to 4) of a shape tuple, axes of length 1 dropped from the front,
 /// then from the back, until two are left; otherwise the shape as text.
-fn shape(text: &str) -> std::result::Result<[u64; 3], String> {
+fn shape(text: &str) -> std::result::Result<[u64; 4], String> {
     let tuple = text.split_inclusive(')').next().unwrap_or("");
     let refuse = || tuple.chars().take(80).collect::<String>().escape_default().to_string();
     let inner = tuple.strip_prefix('(').and_then(|t| t.strip_suffix(')')).ok_or_else(refuse)?;
@@ -107,53 +124,87 @@ fn shape(text: &str) -> std::result::Result<[u64; 3], String> {
     while axes.len() > 2 {
         axes = match axes {
             [1, rest @ ..] | [rest @ .., 1] => rest,
-            [rows, columns, 3] => return Ok([*rows, *columns, 3]),
+            [rows, columns, channels @ 2..=4] => return Ok([1, *rows, *columns, *channels]),
+            [maps, rows, columns] => return Ok([*maps, *rows, *columns, 1]),
             _ => return Err(refuse()),
         };
     }
     match *axes {
-        [rows, columns] => Ok([rows, columns, 1]),
+        [rows, columns] => Ok([1, rows, columns, 1]),
         _ => Err(refuse()),
     }
 }
 
 /// Reads the array; `format` is `npy`, or `npz` for a member of an archive.
-pub(super) fn decode(format: &'static str, bytes: &[u8], limits: &Limits) -> Result<Image> {
+pub(super) fn decode(format: &'static str, bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
     let header = header(format, bytes)?;
     let sample = header.sample;
     let channels = header.channels as usize;
-    let area = limits.area(format, header.columns, header.rows, channels * sample.bytes())?;
+    let area = options.limits.area(format, header.columns, header.rows, channels * sample.bytes())?;
     let (width, height) = (header.columns as usize, header.rows as usize);
-    let needed = area * channels * sample.bytes();
-    let data = &bytes[header.data_at..];
-    let data = data.get(..needed).ok_or_else(|| {
-        unreadable(
-            format,
-            format!("{width} x {height} {} need {needed} bytes, {} are there", sample.name(), data.len()),
-        )
-    })?;
-    let mut warnings = Vec::new();
-    if channels == 3 {
-        warnings.push("an organised cloud: its third channel is taken as z".to_string());
+    let chosen = choose(format, &header, options)?;
+    let data = bytes.get(header.data_at..).unwrap_or(&[]);
+    let needed = header.maps.saturating_mul((area * channels * sample.bytes()) as u64);
+    if needed > data.len() as u64 {
+        let stack = if header.maps > 1 { format!("{} maps of ", header.maps) } else { String::new() };
+        let name = sample.name();
+        let wrong = format!("{stack}{width} x {height} {name} need {needed} bytes, {} are there", data.len());
+        return Err(unreadable(format, wrong));
     }
-    let rows = last_channel_by_rows(data, &header);
-    let pixels = pixels(&rows, sample, header.big_endian, &mut warnings);
-    Ok(Image { width, height, pixels, sample: sample.name(), warnings })
+    let mut warnings = Vec::new();
+    if header.maps > 1 {
+        warnings.push(format!("map {chosen} of {} along the first axis, counted from 0", header.maps));
+    }
+    let is_cloud = channels == 3 && matches!(sample, Sample::F32 | Sample::F64);
+    let (first, kept) = if is_cloud { (2, 1) } else { (0, channels) };
+    let pixels = pixels(&by_rows(data, &header, chosen, first, kept), sample, header.big_endian, &mut warnings);
+    let mut image = Image { channels: kept, ..Image::new(width, height, pixels, sample.name(), warnings) };
+    if is_cloud && !options.channels {
+        image.warnings.push("an organised cloud: its third channel is taken as z".to_string());
+    }
+    reduce(format, &mut image, channels == 4, options)?;
+    Ok(image)
 }
 
-/// The bytes of the only, or the third, channel, row by row.
-fn last_channel_by_rows<'a>(data: &'a [u8], header: &Header) -> Cow<'a, [u8]> {
-    let (width, height) = (header.columns as usize, header.rows as usize);
-    let (channels, size) = (header.channels as usize, header.sample.bytes());
-    if channels == 1 && !header.fortran {
-        return Cow::Borrowed(data);
+/// Which map of a stack, from 0.
+fn choose(format: &'static str, header: &Header, options: &DecodeOptions) -> Result<usize> {
+    let last = header.maps.saturating_sub(1);
+    let accepted = || format!("one of the {} maps along the first axis: 0 to {last}", header.maps);
+    match &options.member {
+        _ if header.maps == 0 => Err(unreadable(format, "the first axis is empty")),
+        _ if header.maps == 1 => Ok(0),
+        // The member of an archive is a name.
+        Some(member) if format == "npy" => match member.parse::<u64>() {
+            Ok(index) if index <= last => Ok(index as usize),
+            _ => Err(Error::parameter("--member", member, accepted())),
+        },
+        _ if format == "npz" => {
+            let wrong = format!("the array is a stack of {} maps; save the one to read", header.maps);
+            Err(unreadable(format, wrong))
+        }
+        _ => Err(Error::parameter("--member", "not given", accepted())),
     }
-    let mut rows = Vec::with_capacity(width * height * size);
+}
+
+/// The bytes of one map, row by row, of its channels from `first`, `kept` in number.
+fn by_rows<'a>(data: &'a [u8], header: &Header, chosen: usize, first: usize, kept: usize) -> Cow<'a, [u8]> {
+    let (width, height, maps) = (header.columns as usize, header.rows as usize, header.maps as usize);
+    let (channels, size) = (header.channels as usize, header.sample.bytes());
+    let map = width * height * channels * size;
+    if kept == channels && !header.fortran {
+        return Cow::Borrowed(&data[chosen * map..][..map]);
+    }
+    let mut rows = Vec::with_capacity(width * height * kept * size);
     for v in 0..height {
         for u in 0..width {
-            let c = channels - 1;
-            let at = if header.fortran { (c * width + u) * height + v } else { (v * width + u) * channels + c };
-            rows.extend_from_slice(&data[at * size..][..size]);
+            for c in first..first + kept {
+                let at = if header.fortran {
+                    ((c * width + u) * height + v) * maps + chosen
+                } else {
+                    ((chosen * height + v) * width + u) * channels + c
+                };
+                rows.extend_from_slice(&data[at * size..][..size]);
+            }
         }
     }
     Cow::Owned(rows)

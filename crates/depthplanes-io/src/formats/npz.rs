@@ -51,18 +51,18 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
     if crc.sum() != member.checksum {
         return Err(unreadable(format!("the checksum of `{}` is wrong: the archive is damaged", member.name)));
     }
-    let mut image = npy::decode("npz", &array, &options.limits)?;
+    let mut image = npy::decode("npz", &array, options)?;
     if members.len() > 1 && options.member.is_none() {
-        image.warnings.push(format!("the array `{}` is the only map of {} members", member.name, members.len()));
+        let others: Vec<_> = members.iter().filter(|other| other.name != member.name).map(Member::shown).collect();
+        let name = member.shown();
+        image.warnings.push(format!("the array {name} is taken, the only map beside {}", few(&others)));
     }
     Ok(image)
 }
 
 /// The member asked for, or the only one that is a map.
 fn choose<'a, 'b>(members: &'b [Member<'a>], options: &DecodeOptions) -> Result<&'b Member<'a>> {
-    let names = |members: &mut dyn Iterator<Item = &Member>| {
-        members.map(|member| format!("`{}`", member.name)).collect::<Vec<_>>().join(", ")
-    };
+    let names = |members: &mut dyn Iterator<Item = &Member>| few(&members.map(Member::shown).collect::<Vec<_>>());
     if let Some(wanted) = &options.member {
         return members
             .iter()
@@ -78,12 +78,27 @@ fn choose<'a, 'b>(members: &'b [Member<'a>], options: &DecodeOptions) -> Result<
     match maps[..] {
         [only] => Ok(only),
         [] if members.len() == 1 => Ok(&members[0]), // Its own reader says what is wrong with it.
-        [] => Err(unreadable(format!("none of its {} members is an array of two axes", members.len()))),
+        [] => {
+            let there = names(&mut members.iter());
+            Err(unreadable(format!("none of its {} members is an array of two axes: {there}", members.len())))
+        }
         _ => Err(Error::parameter("--member", "not given", names(&mut maps.iter().copied()))),
     }
 }
 
+/// Names with commas between, the first of many.
+fn few(names: &[String]) -> String {
+    const MOST: usize = 20;
+    let more = if names.len() > MOST { format!(" and {} more", names.len() - MOST) } else { String::new() };
+    format!("{}{more}", names[..names.len().min(MOST)].join(", "))
+}
+
 impl Member<'_> {
+    /// The name as it may be shown.
+    fn shown(&self) -> String {
+        format!("`{}`", self.name.escape_debug())
+    }
+
     /// The first `size` bytes of the array.
     fn unpack(&self, size: u64, limits: &Limits) -> Result<Vec<u8>> {
         if size > limits.max_bytes as u64 {

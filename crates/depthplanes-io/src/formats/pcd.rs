@@ -80,7 +80,7 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
         }
     }
     let (width, height) = (header.width as usize, header.height as usize);
-    Ok(Image { width, height, pixels, sample: layout.sample.name(), warnings })
+    Ok(Image::new(width, height, pixels, layout.sample.name(), warnings))
 }
 
 fn header(bytes: &[u8]) -> Result<(Header, &[u8])> {

@@ -39,5 +39,5 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
     let data = cursor.take(packed).ok_or_else(short)?;
     let samples = lzf::decompress(data, unpacked).ok_or_else(|| unreadable("the packed data are damaged"))?;
     let pixels = pixels(&samples, Sample::U16, false, &mut Vec::new());
-    Ok(Image { width: width as usize, height: height as usize, pixels, sample: "uint16", warnings: Vec::new() })
+    Ok(Image::new(width as usize, height as usize, pixels, "uint16", Vec::new()))
 }

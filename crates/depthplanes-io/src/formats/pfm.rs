@@ -5,8 +5,9 @@
 //! is ignored, as every loader of these data sets does, with a warning unless it is 1.
 
 use super::bytes::header_words;
+use super::channels::reduce;
 use super::format::{DecodeOptions, Format, Image};
-use super::samples::{Sample, pixels, single_channel};
+use super::samples::{Sample, pixels};
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
 
@@ -41,14 +42,17 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
     if scale.abs() != 1.0 {
         warnings.push(format!("the header's scale {scale} gives the byte order only; values are as stored"));
     }
-    let Pixels::F32(values) = pixels(data, Sample::F32, scale > 0.0, &mut warnings) else {
+    let Pixels::F32(mut values) = pixels(data, Sample::F32, scale > 0.0, &mut warnings) else {
         unreachable!("floats stay floats");
     };
-    let mut values = single_channel("pfm", values, channels, false, &mut warnings)?;
     let (width, height) = (width as usize, height as usize);
+    let row = width * channels;
     for v in 0..height / 2 {
-        let (top, bottom) = values.split_at_mut((height - 1 - v) * width);
-        top[v * width..][..width].swap_with_slice(&mut bottom[..width]);
+        let (top, bottom) = values.split_at_mut((height - 1 - v) * row);
+        top[v * row..][..row].swap_with_slice(&mut bottom[..row]);
     }
-    Ok(Image { width, height, pixels: Pixels::F32(values), sample: "float32", warnings })
+    let image = Image::new(width, height, Pixels::F32(values), "float32", warnings);
+    let mut image = Image { channels, ..image };
+    reduce("pfm", &mut image, false, options)?;
+    Ok(image)
 }

@@ -7,8 +7,8 @@ use std::io::Cursor;
 
 use png::{BitDepth, ColorType, Decoder, DecodingError, Reader, Transformations};
 
+use super::channels::reduce;
 use super::format::{DecodeOptions, Format, Image};
-use super::samples::single_channel;
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
 
@@ -54,15 +54,17 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
     }
     let alpha = matches!(color, ColorType::GrayscaleAlpha | ColorType::Rgba);
     let pixels = if sample_bytes == 2 {
-        let samples = read_u16(&mut reader, samples)?;
-        Pixels::U16(single_channel("png", samples, channels, alpha, &mut warnings)?)
+        Pixels::U16(read_u16(&mut reader, samples)?)
     } else {
         let mut buffer = vec![0u8; samples];
         reader.next_frame(&mut buffer).map_err(unreadable)?;
-        Pixels::U8(single_channel("png", buffer, channels, alpha, &mut warnings)?)
+        Pixels::U8(buffer)
     };
     let sample = if sample_bytes == 2 { "uint16" } else { "uint8" };
-    Ok(Image { width: width as usize, height: height as usize, pixels, sample, warnings })
+    let image = Image::new(width as usize, height as usize, pixels, sample, warnings);
+    let mut image = Image { channels, ..image };
+    reduce("png", &mut image, alpha, options)?;
+    Ok(image)
 }
 
 /// PNG stores 16-bit samples big-endian.

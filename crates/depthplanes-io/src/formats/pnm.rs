@@ -4,8 +4,9 @@
 //! maxval 255, `u16` above, as stored (not stretched to the full range).
 
 use super::bytes::header_words;
+use super::channels::reduce;
 use super::format::{DecodeOptions, Format, Image};
-use super::samples::{Sample, pixels, single_channel};
+use super::samples::{Sample, pixels};
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
 
@@ -50,13 +51,14 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
         pixels(data, sample, true, &mut warnings)
     };
     let values = match values {
-        Pixels::U8(v) => Pixels::U8(single_channel("pnm", within(v, largest as u8)?, channels, false, &mut warnings)?),
-        Pixels::U16(v) => {
-            Pixels::U16(single_channel("pnm", within(v, largest as u16)?, channels, false, &mut warnings)?)
-        }
+        Pixels::U8(values) => Pixels::U8(within(values, largest as u8)?),
+        Pixels::U16(values) => Pixels::U16(within(values, largest as u16)?),
         Pixels::F32(_) => unreachable!("PNM samples are integers"),
     };
-    Ok(Image { width: width as usize, height: height as usize, pixels: values, sample: sample.name(), warnings })
+    let image = Image::new(width as usize, height as usize, values, sample.name(), warnings);
+    let mut image = Image { channels, ..image };
+    reduce("pnm", &mut image, false, options)?;
+    Ok(image)
 }
 
 /// Refuses samples above the largest value that the header states.

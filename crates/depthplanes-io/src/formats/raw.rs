@@ -1,7 +1,9 @@
-//! Headerless 16-bit samples, little-endian, as cameras and `ffmpeg -pix_fmt gray16le` write them.
+//! Headerless samples, as cameras, `ffmpeg -pix_fmt gray16le` and numpy's `tofile` write them.
 //!
-//! In: exactly `2 * width * height` bytes and the size, which nothing in the file can say. Out:
-//! `u16` values. Big-endian samples are read with the option to swap bytes.
+//! In: the samples row by row, and the size, which nothing in the file can say. The type is stated, or the length of the
+//! file says it: 1 byte a pixel is `uint8`, 2 are little-endian `uint16`, 8 are `float64`, and 4 are the first of
+//! `float32`, `uint32` (either byte order) and `int32` whose numbers can be a map. Out: values by the rules
+//! of `samples`.
 
 use super::format::{DecodeOptions, Format, Image};
 use super::samples::{Sample, pixels};
@@ -9,22 +11,197 @@ use crate::error::{Error, Result};
 
 pub(super) const FORMAT: Format = Format {
     name: "raw",
-    about: "headerless 16-bit little-endian samples, with a stated size",
+    about: "headerless samples, integers or floats, with a stated size",
     extensions: &["raw", "bin", "z16"],
     sniff: |_| false,
     decode,
 };
 
+/// A name, what it is, and whether it is big-endian.
+type Type = (&'static str, Sample, bool);
+
+const TYPES: &[Type] = &[
+    ("uint8", Sample::U8, false),
+    ("int8", Sample::I8, false),
+    ("uint16", Sample::U16, false),
+    ("uint16-be", Sample::U16, true),
+    ("int16", Sample::I16, false),
+    ("int16-be", Sample::I16, true),
+    ("uint32", Sample::U32, false),
+    ("uint32-be", Sample::U32, true),
+    ("int32", Sample::I32, false),
+    ("int32-be", Sample::I32, true),
+    ("float16", Sample::F16, false),
+    ("float16-be", Sample::F16, true),
+    ("float32", Sample::F32, false),
+    ("float32-be", Sample::F32, true),
+    ("float64", Sample::F64, false),
+    ("float64-be", Sample::F64, true),
+];
+
+/// Sizes of depth maps that cameras and networks make.
+const COMMON_SIZES: &[(usize, usize)] = &[
+    (640, 480),
+    (320, 240),
+    (1280, 720),
+    (848, 480),
+    (640, 360),
+    (424, 240),
+    (480, 270),
+    (256, 192),
+    (512, 424),
+    (640, 576),
+    (320, 288),
+    (1024, 1024),
+    (512, 512),
+    (640, 400),
+    (1280, 800),
+    (1024, 768),
+    (480, 640),
+    (192, 256),
+    (160, 120),
+    (224, 172),
+    (176, 144),
+    (240, 180),
+    (1280, 960),
+    (1920, 1080),
+    (672, 376),
+];
+
+/// Names of the sample types of headerless files, in numpy's words; `-be` is big-endian.
+pub fn raw_types() -> impl Iterator<Item = &'static str> {
+    TYPES.iter().map(|(name, ..)| *name)
+}
+
 fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
     let Some((width, height)) = options.raw_size else {
         return Err(Error::parameter("--raw-size", "not given", "WIDTHxHEIGHT of the headerless samples"));
     };
-    let area = options.limits.area("raw", width as u64, height as u64, 2)?;
-    if bytes.len() != 2 * area {
-        let accepted =
-            format!("a size of {} pixels in all: the input has {} bytes, two a pixel", bytes.len() / 2, bytes.len());
-        return Err(Error::parameter("--raw-size", format_args!("{width}x{height}"), accepted));
+    let area = options.limits.area("raw", width as u64, height as u64, 1)?;
+    let mut warnings = Vec::new();
+    let (name, sample, big_endian) = match &options.raw_type {
+        Some(name) => stated(name)?,
+        None => by_length(bytes, area).ok_or_else(|| misfit(bytes, (width, height), None))?,
+    };
+    options.limits.area("raw", width as u64, height as u64, sample.bytes())?;
+    if bytes.len() != area * sample.bytes() {
+        return Err(misfit(bytes, (width, height), Some(sample)));
     }
-    let pixels = pixels(bytes, Sample::U16, false, &mut Vec::new());
-    Ok(Image { width, height, pixels, sample: "uint16", warnings: Vec::new() })
+    if options.raw_type.is_none() && sample != Sample::U16 {
+        let each = sample.bytes();
+        let other = if each == 1 { "" } else { "; another is stated with --raw-type" };
+        warnings.push(format!("{each} byte{} a pixel are read as {name}{other}", if each == 1 { "" } else { "s" }));
+    }
+    let pixels = pixels(bytes, sample, big_endian, &mut warnings);
+    Ok(Image::new(width, height, pixels, sample.name(), warnings))
+}
+
+/// The type of that name: one of the table, shorter (`f32`, `u16be`), or numpy's code (`<f4`).
+fn stated(given: &str) -> Result<Type> {
+    let (is_big_endian, code) = match given.split_at_checked(1) {
+        Some(("<" | "=" | "|", code)) => (false, code),
+        Some((">", code)) => (true, code),
+        _ => (false, given),
+    };
+    let found = TYPES.iter().find(|(name, sample, big_endian)| {
+        let short = name.replacen("uint", "u", 1).replacen("int", "i", 1).replacen("float", "f", 1);
+        let coded = format!("{}{}", &name[..1], sample.bytes());
+        let by_code = coded == code && (*big_endian == is_big_endian || sample.bytes() == 1);
+        *name == given || short == given || short.replace('-', "") == given || by_code
+    });
+    found.copied().ok_or_else(|| {
+        let names: Vec<_> = raw_types().collect();
+        Error::parameter("--raw-type", given, names.join(", "))
+    })
+}
+
+/// The type that the number of bytes a pixel says.
+fn by_length(bytes: &[u8], area: usize) -> Option<Type> {
+    let named = |name: &str| TYPES.iter().find(|(known, ..)| *known == name).copied();
+    if !bytes.len().is_multiple_of(area) {
+        return None;
+    }
+    match bytes.len() / area {
+        1 => named("uint8"),
+        2 => named("uint16"),
+        4 => ["float32", "float32-be", "uint32", "uint32-be", "int32"]
+            .into_iter()
+            .filter_map(named)
+            .find(|t| plausible(bytes, t)),
+        8 => ["float64", "float64-be"].into_iter().filter_map(named).find(|t| plausible(bytes, t)),
+        _ => None,
+    }
+}
+
+/// Whether the numbers can be a map: floats are 0, not finite, or of usual size, integers stay below 2^24.
+fn plausible(bytes: &[u8], (_, sample, big_endian): &Type) -> bool {
+    let each = sample.bytes();
+    let every = (bytes.len() / each).div_ceil(1 << 16).max(1);
+    let (mut some, mut fitting, mut finite) = (0usize, 0usize, 0usize);
+    for chunk in bytes.chunks_exact(each).step_by(every) {
+        let mut little = [0; 8];
+        little[..each].copy_from_slice(chunk);
+        if *big_endian {
+            little[..each].reverse();
+        }
+        let low = [little[0], little[1], little[2], little[3]];
+        let value = match sample {
+            Sample::F32 => f64::from(f32::from_le_bytes(low)),
+            Sample::F64 => f64::from_le_bytes(little),
+            Sample::I32 => f64::from(i32::from_le_bytes(low)),
+            _ => f64::from(u32::from_le_bytes(low)),
+        };
+        let is_float = matches!(sample, Sample::F32 | Sample::F64);
+        let usual = value == 0.0 || !value.is_finite() || (1e-4..1e7).contains(&value.abs());
+        some += 1;
+        finite += usize::from(value.is_finite());
+        fitting += usize::from(if is_float { usual } else { value < f64::from(1 << 24) });
+    }
+    fitting * 100 >= some * 98 && finite > 0
+}
+
+/// What to say of a size and type that the file has not.
+fn misfit(bytes: &[u8], (width, height): (usize, usize), sample: Option<Sample>) -> Error {
+    let (length, area) = (bytes.len(), width * height);
+    if sample.is_none() && length == 4 * area || length == 8 * area {
+        let accepted = "one that is stated: the numbers are no depths as float32 or float64, nor integers below 2^24; try \
+             float32, float32-be, uint32, int32 or float64";
+        return Error::parameter("--raw-type", "not given", accepted);
+    }
+    let sizes: Vec<usize> = sample.map_or(vec![8, 4, 2, 1], |sample| vec![sample.bytes()]);
+    // A header is short: more than an eighth of the map would be another size.
+    let header = sizes.iter().find(|each| length > area * **each && length - area * **each <= area * **each / 8);
+    let mut accepted = match sample {
+        Some(sample) => {
+            format!("a size of {length} bytes in all at {} bytes a pixel ({})", sample.bytes(), sample.name())
+        }
+        None => format!("a size of {length} bytes in all at 1, 2, 4 or 8 bytes a pixel"),
+    };
+    if let Some(each) = header {
+        let before = length - area * each;
+        accepted = format!(
+            "samples without a header: the file has {before} bytes more than {width} x {height} pixels of {each} bytes; if \
+             they are a header, remove it (tail -c +{} FILE > map.raw)",
+            before + 1
+        );
+    }
+    let fitting = common_sizes(length, &sizes);
+    if !fitting.is_empty() {
+        accepted = format!("{accepted}; of the common sizes {fitting}");
+    }
+    Error::parameter("--raw-size", format_args!("{width}x{height}"), accepted)
+}
+
+/// Common sizes that the length of a file is: `640x480 (2 bytes a pixel) fits`.
+fn common_sizes(length: usize, bytes_a_pixel: &[usize]) -> String {
+    let mut fitting = Vec::new();
+    for each in [2, 4, 8, 1].into_iter().filter(|each| bytes_a_pixel.contains(each)) {
+        let sizes = COMMON_SIZES.iter().filter(|(width, height)| width * height * each == length);
+        fitting.extend(sizes.map(|(width, height)| format!("{width}x{height} ({each} bytes a pixel)")));
+    }
+    match fitting.len() {
+        0 => String::new(),
+        1 => format!("{} fits", fitting[0]),
+        _ => format!("{} fit", fitting[..fitting.len().min(4)].join(", ")),
+    }
 }

@@ -57,7 +57,7 @@ pub(super) fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
         return Err(unreadable(format!("{width} x {height} pixels in {} bytes", bytes.len())));
     }
     let pixels = Pixels::U16(unpack(&bytes[8..], area)?);
-    Ok(Image { width: width as usize, height: height as usize, pixels, sample: "uint16", warnings: Vec::new() })
+    Ok(Image::new(width as usize, height as usize, pixels, "uint16", Vec::new()))
 }
 
 /// The nibbles of a byte slice, in RVL's order.

@@ -1,13 +1,11 @@
-//! From samples of any type and byte order to the three pixel types, and from several channels
-//! to one; the rules that all formats share.
+//! From samples of any type and byte order to the three pixel types; the rules that all formats share.
 //!
 //! - 8-bit, 16-bit unsigned and 32-bit float samples stay as they are.
 //! - Other integers become 16-bit if all fit, otherwise 32-bit floats (exact to 2^24), with a
 //!   warning. Negative integers mean "missing" in every data set known to us: they become 0, with
 //!   a warning.
-//! - 16-bit and 64-bit floats become 32-bit floats.
+//! - 16-bit and 64-bit floats become 32-bit floats. Numbers beyond these become infinite, which is missing, with a warning.
 
-use crate::error::{Error, Result};
 use crate::frame::Pixels;
 
 /// Sample types of the formats that have several.
@@ -70,7 +68,7 @@ pub(super) fn pixels(bytes: &[u8], sample: Sample, big_endian: bool, warnings: &
         Sample::U16 => Pixels::U16(numbers!(bytes, u16, big_endian).collect()),
         Sample::F16 => Pixels::F32(numbers!(bytes, u16, big_endian).map(half).collect()),
         Sample::F32 => Pixels::F32(numbers!(bytes, f32, big_endian).collect()),
-        Sample::F64 => Pixels::F32(numbers!(bytes, f64, big_endian).map(|value| value as f32).collect()),
+        Sample::F64 => doubles(numbers!(bytes, f64, big_endian), warnings),
         Sample::I8 => integers(|| bytes.iter().map(|&byte| i128::from(byte as i8)), warnings),
         Sample::I16 => integers(|| numbers!(bytes, i16, big_endian).map(i128::from), warnings),
         Sample::U32 => integers(|| numbers!(bytes, u32, big_endian).map(i128::from), warnings),
@@ -78,6 +76,20 @@ pub(super) fn pixels(bytes: &[u8], sample: Sample, big_endian: bool, warnings: &
         Sample::U64 => integers(|| numbers!(bytes, u64, big_endian).map(i128::from), warnings),
         Sample::I64 => integers(|| numbers!(bytes, i64, big_endian).map(i128::from), warnings),
     }
+}
+
+/// 32-bit floats of 64-bit ones.
+pub(super) fn doubles(values: impl Iterator<Item = f64>, warnings: &mut Vec<String>) -> Pixels {
+    let mut beyond = 0usize;
+    let narrow = |value: f64| {
+        beyond += usize::from(value.is_finite() && (value as f32).is_infinite());
+        value as f32
+    };
+    let values = values.map(narrow).collect();
+    if beyond > 0 {
+        warnings.push(format!("{beyond} values beyond 3.4e38 do not fit 32-bit floats: they are taken as missing"));
+    }
+    Pixels::F32(values)
 }
 
 /// A 16-bit IEEE float, from its bits.
@@ -107,43 +119,4 @@ pub(super) fn integers<I: Iterator<Item = i128>>(values: impl Fn() -> I, warning
     }
     warnings.push(format!("values up to {largest} do not fit 16 bits: read as floats; state the unit with --encoding"));
     Pixels::F32(values().map(|value| value.max(0) as f32).collect())
-}
-
-/// The advice for pictures that are not depth maps.
-pub(super) const NOT_DEPTH: &str = "one channel, or several equal ones: a colourised picture cannot be turned back \
-     into depth, export the raw depth (16-bit or float) instead";
-
-/// Keeps the first of `channels` interleaved channels, the last of which is opacity if `alpha`.
-///
-/// # Errors
-/// [`Error::Unreadable`] if the channels (but opacity) differ: a colourised picture.
-pub(super) fn single_channel<T: Copy + PartialEq>(
-    format: &'static str,
-    mut samples: Vec<T>,
-    channels: usize,
-    alpha: bool,
-    warnings: &mut Vec<String>,
-) -> Result<Vec<T>> {
-    if channels <= 1 {
-        return Ok(samples);
-    }
-    let colours = channels - usize::from(alpha);
-    let differing = samples.chunks_exact(channels).filter(|p| p[1..colours].iter().any(|c| *c != p[0])).count();
-    if differing > 0 {
-        let wrong = format!("the {colours} channels differ in {differing} pixels: a colourised picture, not depth");
-        return Err(Error::Unreadable { format, wrong, accepted: NOT_DEPTH });
-    }
-    if colours > 1 {
-        warnings.push(format!("{colours} equal channels: one is kept"));
-    }
-    if alpha {
-        warnings.push("the opacity channel is ignored".to_string());
-    }
-    let area = samples.len() / channels;
-    for pixel in 0..area {
-        samples[pixel] = samples[pixel * channels];
-    }
-    samples.truncate(area);
-    samples.shrink_to_fit();
-    Ok(samples)
 }

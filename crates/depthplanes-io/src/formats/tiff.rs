@@ -1,21 +1,25 @@
-//! TIFF, the first picture of the file: integers or floats, one channel (or equal ones).
+//! TIFF, one page of the file: integers or floats, one channel (or equal ones).
 //!
-//! In: strips or tiles, uncompressed, PackBits, LZW or deflate. Out: `u8`, `u16` or `f32` values by
-//! the rules of `samples`.
+//! In: strips or tiles, uncompressed, PackBits, LZW or deflate; without a page stated, the first of the largest pages that
+//! are no thumbnails. Out: `u8`, `u16` or `f32` values by the rules of `samples`. Unsigned integers of which 0 is white are
+//! inverted as the standard says; floats are taken as they are, since they have no largest value to be subtracted from.
 
+use std::borrow::Cow;
 use std::io::Cursor;
 
 use tiff::decoder::{Decoder, DecodingResult, Limits as TiffLimits};
+use tiff::tags::{ByteOrder, Tag};
 use tiff::{ColorType, TiffError};
 
+use super::channels::reduce;
 use super::format::{DecodeOptions, Format, Image};
-use super::samples::{half, integers, single_channel};
+use super::samples::{doubles, half, integers};
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
 
 pub(super) const FORMAT: Format = Format {
     name: "tiff",
-    about: "TIFF, 8 or 16 bits or float, first picture",
+    about: "TIFF, integers or float, first page of full size or a chosen one",
     extensions: &["tif", "tiff"],
     sniff: |bytes| [&b"II*\0"[..], b"MM\0*", b"II+\0", b"MM\0+"].iter().any(|magic| bytes.starts_with(magic)),
     decode,
@@ -33,62 +37,201 @@ fn from_tiff(error: TiffError) -> Error {
     unreadable(error)
 }
 
+/// Pages beyond these are not looked at.
+const MOST_PAGES: usize = 1000;
+
+type Reader<'a> = Decoder<Cursor<&'a [u8]>>;
+
 fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
+    let (page, note) = choose(&pages(bytes, options)?, options)?;
+    let mut decoder = reader(bytes, options)?;
+    decoder.seek_to_image(page).map_err(from_tiff)?;
+    let white_is_zero = photometric(&mut decoder)? == Some(0);
+    // The crate inverts while it reads, floats as well; so it is told that black is 0.
+    let plain = if white_is_zero { black_is_zero(bytes, &mut decoder) } else { Cow::Borrowed(bytes) };
+    let mut decoder = reader(&plain, options)?;
+    decoder.seek_to_image(page).map_err(from_tiff)?;
+    let mut image = read_page(&mut decoder, options)?;
+    image.warnings.splice(0..0, note);
+    if white_is_zero {
+        invert(&mut image);
+    }
+    let alpha = opacity_is_last(&mut decoder, image.channels);
+    reduce("tiff", &mut image, alpha, options)?;
+    Ok(image)
+}
+
+fn reader<'a>(bytes: &'a [u8], options: &DecodeOptions) -> Result<Reader<'a>> {
     let most = bytes.len().saturating_mul(BEST_RATIO).min(options.limits.max_bytes);
     let mut limits = TiffLimits::default();
     limits.decoding_buffer_size = most;
     limits.intermediate_buffer_size = most;
     limits.ifd_value_size = bytes.len();
-    let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(from_tiff)?.with_limits(limits);
+    Ok(Decoder::new(Cursor::new(bytes)).map_err(from_tiff)?.with_limits(limits))
+}
+
+/// A page of the file.
+struct Page {
+    width: u32,
+    height: u32,
+    /// A smaller version of another page, or a mask, by its own word.
+    reduced: bool,
+}
+
+fn pages(bytes: &[u8], options: &DecodeOptions) -> Result<Vec<Page>> {
+    let mut decoder = reader(bytes, options)?;
+    let mut pages = Vec::new();
+    loop {
+        let (width, height) = decoder.dimensions().map_err(from_tiff)?;
+        let kind = decoder.find_tag_unsigned::<u32>(Tag::NewSubfileType).ok().flatten().unwrap_or(0);
+        let old_kind = decoder.find_tag_unsigned::<u32>(Tag::SubfileType).ok().flatten().unwrap_or(0);
+        pages.push(Page { width, height, reduced: kind & 5 != 0 || old_kind == 2 });
+        if !decoder.more_images() || pages.len() == MOST_PAGES {
+            return Ok(pages);
+        }
+        if decoder.next_image().is_err() {
+            return Ok(pages); // What follows cannot be told from damage; the pages before it are there.
+        }
+    }
+}
+
+/// The index of the page to read, and what to say if there are several.
+fn choose(pages: &[Page], options: &DecodeOptions) -> Result<(usize, Option<String>)> {
+    let sizes: Vec<String> = pages.iter().take(6).map(|page| format!("{}x{}", page.width, page.height)).collect();
+    let more = if pages.len() > 6 { " ..." } else { "" };
+    let sizes = format!("{}{more}", sizes.join(", "));
+    if let Some(member) = &options.member {
+        return match member.parse::<usize>() {
+            Ok(page) if (1..=pages.len()).contains(&page) => Ok((page - 1, None)),
+            _ => Err(Error::parameter("--member", member, format!("a page of 1 to {} ({sizes})", pages.len()))),
+        };
+    }
+    let area = |page: &Page| u64::from(page.width) * u64::from(page.height);
+    let whole = |page: &&Page| !page.reduced || pages.iter().all(|page| page.reduced);
+    let largest = pages.iter().filter(whole).map(area).max().unwrap_or(0);
+    let chosen = pages.iter().position(|page| whole(&page) && area(page) == largest).unwrap_or(0);
+    let note = (pages.len() > 1)
+        .then(|| format!("page {} of {} is taken ({sizes}); --member states another", chosen + 1, pages.len()));
+    Ok((chosen, note))
+}
+
+fn photometric(decoder: &mut Reader<'_>) -> Result<Option<u16>> {
+    decoder.find_tag_unsigned::<u16>(Tag::PhotometricInterpretation).map_err(from_tiff)
+}
+
+/// The file with the page's photometric interpretation changed from 0 to 1.
+fn black_is_zero<'a>(bytes: &'a [u8], decoder: &mut Reader<'_>) -> Cow<'a, [u8]> {
+    let little = matches!(decoder.byte_order(), ByteOrder::LittleEndian);
+    let big_tiff = matches!(bytes.get(..4), Some(b"II+\0" | b"MM\0+"));
+    let number = |at: usize, length: usize| -> Option<u64> {
+        let bytes = bytes.get(at..at.checked_add(length)?)?;
+        let shift = |value: u64, byte: &u8| value << 8 | u64::from(*byte);
+        Some(if little { bytes.iter().rev().fold(0, shift) } else { bytes.iter().fold(0, shift) })
+    };
+    let mut place = || {
+        let at = usize::try_from(decoder.ifd_pointer()?.0).ok()?;
+        let (count_bytes, entry, value) = if big_tiff { (8, 20, 12) } else { (2, 12, 8) };
+        let entries = number(at, count_bytes)?.min(1 << 16) as usize;
+        let places = (0..entries).map(|index| at + count_bytes + entry * index);
+        let tag = u64::from(Tag::PhotometricInterpretation.to_u16());
+        places.into_iter().find(|at| number(*at, 2) == Some(tag)).map(|at| at + value + usize::from(!little))
+    };
+    match place() {
+        Some(at) if at < bytes.len() => {
+            let mut changed = bytes.to_vec();
+            changed[at] = 1;
+            Cow::Owned(changed)
+        }
+        _ => Cow::Borrowed(bytes),
+    }
+}
+
+/// All channels of the page, side by side.
+fn read_page(decoder: &mut Reader<'_>, options: &DecodeOptions) -> Result<Image> {
     let (width, height) = decoder.dimensions().map_err(from_tiff)?;
-    let (channels, alpha) = match decoder.colortype().map_err(from_tiff)? {
-        ColorType::Gray(_) => (1, false),
-        ColorType::GrayA(_) => (2, true),
-        ColorType::RGB(_) => (3, false),
-        ColorType::RGBA(_) => (4, true),
+    let color = decoder.colortype().map_err(from_tiff)?;
+    let channels = match color {
+        ColorType::Gray(_) | ColorType::GrayA(_) | ColorType::RGB(_) | ColorType::RGBA(_) => color.num_samples(),
+        ColorType::Multiband { num_samples: samples @ 1..=4, .. } => samples,
+        ColorType::Multiband { num_samples, .. } => return Err(unreadable(format!("it has {num_samples} channels"))),
         other => return Err(unreadable(format!("its colours are {other:?}"))),
     };
+    let channels = usize::from(channels);
     let area = options.limits.area("tiff", width.into(), height.into(), channels)?;
-    let decoded = decoder.read_image().map_err(from_tiff)?;
+    let planar = decoder.find_tag_unsigned::<u16>(Tag::PlanarConfiguration).map_err(from_tiff)? == Some(2);
+    let mut decoded = DecodingResult::U8(Vec::new());
+    decoder.read_image_to_buffer(&mut decoded).map_err(from_tiff)?;
     let mut warnings = Vec::new();
-    let (pixels, sample) = pixels(decoded, channels, alpha, &mut warnings)?;
+    let (mut pixels, sample) = pixels(decoded, &mut warnings);
     let there = match &pixels {
         Pixels::U8(values) => values.len(),
         Pixels::U16(values) => values.len(),
         Pixels::F32(values) => values.len(),
     };
-    if there != area {
-        return Err(unreadable(format!("{width} x {height} pixels are stated, {there} are there")));
+    if there != area * channels {
+        let needed = area * channels;
+        let wrong = format!("{width} x {height} pixels of {channels} channels need {needed} values, {there} are there");
+        return Err(unreadable(wrong));
     }
-    Ok(Image { width: width as usize, height: height as usize, pixels, sample, warnings })
-}
-
-fn pixels(
-    decoded: DecodingResult,
-    channels: usize,
-    alpha: bool,
-    warnings: &mut Vec<String>,
-) -> Result<(Pixels, &'static str)> {
-    macro_rules! one {
-        ($values:expr) => {
-            single_channel("tiff", $values, channels, alpha, warnings)?
+    if planar && channels > 1 {
+        pixels = match pixels {
+            Pixels::U8(values) => Pixels::U8(interleaved(&values, channels)),
+            Pixels::U16(values) => Pixels::U16(interleaved(&values, channels)),
+            Pixels::F32(values) => Pixels::F32(interleaved(&values, channels)),
         };
     }
-    macro_rules! whole {
-        ($values:expr) => {{
-            let values = one!($values);
-            integers(|| values.iter().map(|&value| i128::from(value)), warnings)
-        }};
+    let image = Image::new(width as usize, height as usize, pixels, sample, warnings);
+    let mut image = Image { channels, ..image };
+    if let Some(missing) = no_data(decoder) {
+        image.warnings.push(format!("{missing} is taken as missing, as the file says (GDAL_NODATA)"));
+        image.missing = Some(missing);
     }
-    Ok(match decoded {
-        DecodingResult::U8(values) => (Pixels::U8(one!(values)), "uint8"),
-        DecodingResult::U16(values) => (Pixels::U16(one!(values)), "uint16"),
-        DecodingResult::F32(values) => (Pixels::F32(one!(values)), "float32"),
-        DecodingResult::F64(values) => {
-            (Pixels::F32(one!(values).into_iter().map(|value| value as f32).collect()), "float64")
-        }
+    Ok(image)
+}
+
+/// GDAL's value for missing, unless it is missing anyway: 0, not finite or negative.
+fn no_data(decoder: &mut Reader<'_>) -> Option<f64> {
+    let text = decoder.find_tag(Tag::GdalNodata).ok()??.into_string().ok()?;
+    let value: f64 = text.trim_matches(['\0', ' ']).parse().ok()?;
+    (value.is_finite() && value > 0.0).then_some(value)
+}
+
+/// Whether the last of the channels is opacity.
+fn opacity_is_last(decoder: &mut Reader<'_>, channels: usize) -> bool {
+    let extra = decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).ok().flatten().unwrap_or_default();
+    let color = decoder.colortype().ok();
+    matches!(color, Some(ColorType::GrayA(_) | ColorType::RGBA(_)))
+        || matches!(channels, 2 | 4) && matches!(extra.last(), Some(1 | 2))
+}
+
+/// White is 0: the largest value of the type minus the value, which the standard means for unsigned integers.
+fn invert(image: &mut Image) {
+    match &mut image.pixels {
+        Pixels::U8(values) if image.sample == "uint8" => values.iter_mut().for_each(|value| *value = !*value),
+        Pixels::U16(values) if image.sample == "uint16" => values.iter_mut().for_each(|value| *value = !*value),
+        _ => return,
+    }
+    image.warnings.push("0 is white in this file: the values are inverted, as the standard says".to_string());
+}
+
+fn interleaved<T: Copy>(planes: &[T], channels: usize) -> Vec<T> {
+    let area = planes.len() / channels;
+    (0..area * channels).map(|at| planes[at % channels * area + at / channels]).collect()
+}
+
+fn pixels(decoded: DecodingResult, warnings: &mut Vec<String>) -> (Pixels, &'static str) {
+    macro_rules! whole {
+        ($values:expr) => {
+            integers(|| $values.iter().map(|&value| i128::from(value)), warnings)
+        };
+    }
+    match decoded {
+        DecodingResult::U8(values) => (Pixels::U8(values), "uint8"),
+        DecodingResult::U16(values) => (Pixels::U16(values), "uint16"),
+        DecodingResult::F32(values) => (Pixels::F32(values), "float32"),
+        DecodingResult::F64(values) => (doubles(values.into_iter(), warnings), "float64"),
         DecodingResult::F16(values) => {
-            (Pixels::F32(one!(values).into_iter().map(|value| half(value.to_bits())).collect()), "float16")
+            (Pixels::F32(values.into_iter().map(|value| half(value.to_bits())).collect()), "float16")
         }
         DecodingResult::I8(values) => (whole!(values), "int8"),
         DecodingResult::I16(values) => (whole!(values), "int16"),
@@ -96,5 +239,5 @@ fn pixels(
         DecodingResult::I32(values) => (whole!(values), "int32"),
         DecodingResult::U64(values) => (whole!(values), "uint64"),
         DecodingResult::I64(values) => (whole!(values), "int64"),
-    })
+    }
 }

@@ -178,6 +178,80 @@ pub fn tiff(values: &[u16]) -> Vec<u8> {
     file.into_inner()
 }
 
+/// A page of a TIFF file written by hand, one strip a plane, uncompressed.
+#[derive(Clone)]
+pub struct TiffPage {
+    pub width: u16,
+    pub height: u16,
+    /// Bits a sample, and what they are: 1 = unsigned, 2 = signed, 3 = float.
+    pub sample: (u16, u16),
+    pub channels: u16,
+    /// Further tags, each with one number.
+    pub tags: Vec<(u16, u16)>,
+    /// Text of GDAL_NODATA.
+    pub no_data: Option<&'static str>,
+    /// Samples in the file's byte order; plane by plane if tag 284 is 2.
+    pub data: Vec<u8>,
+}
+
+/// A TIFF file of these pages; photometric interpretation (262) is among the tags of each.
+pub fn tiff_by_hand(pages: &[TiffPage], big_endian: bool) -> Vec<u8> {
+    let two = |value: u16| if big_endian { value.to_be_bytes() } else { value.to_le_bytes() };
+    let four = |value: u32| if big_endian { value.to_be_bytes() } else { value.to_le_bytes() };
+    let mut file = if big_endian { b"MM\0*".to_vec() } else { b"II*\0".to_vec() };
+    let mut link = file.len();
+    file.extend([0; 4]);
+    for page in pages {
+        let planes = if page.tags.contains(&(284, 2)) { usize::from(page.channels) } else { 1 };
+        let data_at = file.len();
+        file.extend(&page.data);
+        let mut long_values = |values: Vec<Vec<u8>>| {
+            let bytes = values.concat();
+            if bytes.len() <= 4 {
+                return [bytes.clone(), vec![0; 4 - bytes.len()]].concat();
+            }
+            let at = file.len() as u32;
+            file.extend(bytes);
+            four(at).to_vec()
+        };
+        let strip = page.data.len() / planes;
+        let places = (0..planes).map(|plane| four((data_at + plane * strip) as u32).to_vec()).collect();
+        let lengths = (0..planes).map(|_| four(strip as u32).to_vec()).collect();
+        let each = |value: u16| vec![two(value).to_vec(); usize::from(page.channels)];
+        let mut entries = vec![
+            (256, 3, 1, long_values(vec![two(page.width).to_vec()])),
+            (257, 3, 1, long_values(vec![two(page.height).to_vec()])),
+            (258, 3, u32::from(page.channels), long_values(each(page.sample.0))),
+            (259, 3, 1, long_values(vec![two(1).to_vec()])),
+            (273, 4, planes as u32, long_values(places)),
+            (277, 3, 1, long_values(vec![two(page.channels).to_vec()])),
+            (278, 3, 1, long_values(vec![two(page.height).to_vec()])),
+            (279, 4, planes as u32, long_values(lengths)),
+            (339, 3, u32::from(page.channels), long_values(each(page.sample.1))),
+        ];
+        for (tag, value) in &page.tags {
+            entries.push((*tag, 3, 1, long_values(vec![two(*value).to_vec()])));
+        }
+        if let Some(text) = page.no_data {
+            let text = [text.as_bytes(), b"\0"].concat();
+            entries.push((42_113, 2, text.len() as u32, long_values(vec![text])));
+        }
+        entries.sort_by_key(|(tag, ..)| *tag);
+        file.resize(file.len().next_multiple_of(2), 0);
+        let directory = file.len();
+        file[link..link + 4].copy_from_slice(&four(directory as u32));
+        file.extend(two(entries.len() as u16));
+        for (tag, kind, count, value) in entries {
+            file.extend([two(tag), two(kind)].concat());
+            file.extend(four(count));
+            file.extend(value);
+        }
+        link = file.len();
+        file.extend([0; 4]);
+    }
+    file
+}
+
 #[cfg(feature = "exr")]
 pub fn exr(values: &[u16]) -> Vec<u8> {
     use exr::prelude::*;
