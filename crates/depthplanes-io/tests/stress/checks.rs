@@ -230,7 +230,20 @@ fn outputs(case: &Case, frame: &Frame, found: &Detection, outlines: &Outlines) -
 }
 
 /// Fields that may be null: what is not known.
-const UNKNOWN: &[&str] = &["intrinsics", "fit", "metric", "area_m2", "polygons_m", "hull_m", "rectangle_m"];
+const UNKNOWN: &[&str] = &[
+    "preset",
+    "missing",
+    "valid_range",
+    "intrinsics",
+    "noise",
+    "smooth",
+    "fit",
+    "metric",
+    "area_m2",
+    "polygons_m",
+    "hull_m",
+    "rectangle_m",
+];
 
 /// A number that is none is written as null.
 fn json(name: &str, value: &Value) -> Check {
