@@ -12,6 +12,7 @@ pub mod formats;
 mod frame;
 pub mod inspect;
 pub mod labels;
+mod map_camera;
 pub mod noise_table;
 pub mod outputs;
 pub mod presets;

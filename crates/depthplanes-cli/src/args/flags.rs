@@ -16,6 +16,8 @@ pub(crate) struct Reading {
     pub(crate) scale: Option<f64>,
     pub(crate) intrinsics: Option<[f64; 4]>,
     pub(crate) camera: Option<PathBuf>,
+    pub(crate) camera_size: Option<(usize, usize)>,
+    pub(crate) rectified: Option<bool>,
     pub(crate) disparity: bool,
     pub(crate) swap_bytes: bool,
     pub(crate) baseline: Option<f64>,
@@ -51,6 +53,8 @@ impl Reading {
             scale: number("scale"),
             intrinsics: matches.get_one("intrinsics").copied(),
             camera: matches.get_one("camera").cloned(),
+            camera_size: matches.get_one("camera-size").copied(),
+            rectified: matches.get_one("rectified").copied(),
             disparity: matches.get_flag("disparity"),
             swap_bytes: matches.get_flag("swap-bytes"),
             baseline: number("baseline"),
@@ -84,7 +88,19 @@ pub(super) fn reading() -> Vec<Arg> {
         number("scale", "UNITS_PER_METRE")
             .help("Map units in a metre, or what `depthplanes encodings` states as the encoding's scale"),
         numbers::<4>("intrinsics", "FX,FY,CX,CY").help("Focal lengths and principal point, pixels"),
-        path("camera", "FILE").help("Camera file: ROS, Open3D, BOP, KITTI, Middlebury and others"),
+        path("camera", "FILE").help(
+            "Camera file: ROS, OpenCV, RealSense, Open3D, COLMAP, KITTI, ZED, a matrix as text and others (docs/cameras.md)",
+        ),
+        Arg::new("camera-size").value_name("WxH").value_parser(size).help(
+            "Size of the picture that --intrinsics or --camera are for; they are scaled to the map",
+        ),
+        Arg::new("rectified")
+            .value_name("yes|no")
+            .num_args(0..=1)
+            .require_equals(true)
+            .default_missing_value("yes")
+            .value_parser(yes_or_no)
+            .help("The map is of the rectified picture: lens distortion is ignored; --rectified=no: it is undone"),
         switch("disparity", "The numbers are disparities; with --focal and --baseline they become metric"),
         switch("swap-bytes", "Swap the two bytes of 16-bit samples"),
         number("baseline", "METRES").help("Baseline of the stereo rig"),
@@ -209,6 +225,14 @@ pub(super) fn numbers<const N: usize>(id: &'static str, value: &'static str) -> 
 
 fn parse_number(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| format!("`{text}` is not a number; accepted: numbers such as 2, 0.5 or 1e-3"))
+}
+
+fn yes_or_no(text: &str) -> Result<bool, String> {
+    match text {
+        "yes" => Ok(true),
+        "no" => Ok(false),
+        _ => Err("accepted: --rectified, --rectified=yes or --rectified=no".to_string()),
+    }
 }
 
 fn size(text: &str) -> Result<(usize, usize), String> {

@@ -5,7 +5,7 @@ use super::output::Report;
 use super::times::{Spread, Times};
 use depthplanes::detection::{CurvedRegion, PixelBox};
 use depthplanes::methods::ParamKind;
-use depthplanes::{Coplanar, Intrinsics, Measure, Plane};
+use depthplanes::{Coplanar, Distortion, Intrinsics, Measure, Plane};
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
@@ -23,6 +23,8 @@ pub(super) struct FrameRecord<'a> {
     height: usize,
     measure: MeasureRecord,
     intrinsics: Option<IntrinsicsRecord>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    distortion: Option<DistortionRecord>,
     method: &'static str,
     parameters: Map<String, Value>,
     valid_pixels: usize,
@@ -102,6 +104,12 @@ struct FitRecord {
 }
 
 #[derive(Serialize)]
+struct DistortionRecord {
+    model: &'static str,
+    coefficients: Vec<f64>,
+}
+
+#[derive(Serialize)]
 struct MetricRecord {
     normal: [f64; 3],
     distance_m: f64,
@@ -125,6 +133,7 @@ impl<'a> From<&Report<'a>> for FrameRecord<'a> {
             height: frame.height,
             measure: frame.sensor.measure.into(),
             intrinsics: frame.sensor.intrinsics.map(IntrinsicsRecord::from),
+            distortion: frame.sensor.distortion.map(DistortionRecord::from),
             method: report.method.name,
             parameters: parameters(report),
             valid_pixels: detection.valid_pixels,
@@ -168,6 +177,12 @@ impl From<Measure> for MeasureRecord {
             }
             Measure::Disparity => MeasureRecord::Disparity,
         }
+    }
+}
+
+impl From<Distortion> for DistortionRecord {
+    fn from(distortion: Distortion) -> Self {
+        DistortionRecord { model: distortion.model().name(), coefficients: distortion.coefficients().to_vec() }
     }
 }
 
