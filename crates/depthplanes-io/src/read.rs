@@ -65,7 +65,7 @@ pub struct ReadOptions {
 impl ReadOptions {
     /// The same with everything that a camera file states.
     pub fn camera(mut self, camera: &CameraFile) -> Self {
-        self.camera_file = Some(camera.clone());
+        (self.intrinsics, self.camera_file) = (None, Some(camera.clone()));
         self
     }
 }

@@ -70,6 +70,10 @@ fn readable(name: &str, frame: &Frame, seen: &Summary) -> String {
     line("encoding", encoding(seen));
     if let Some(camera) = frame.sensor.intrinsics {
         line("camera", format!("fx {}, fy {}, cx {}, cy {}", camera.fx, camera.fy, camera.cx, camera.cy));
+        if let Some(lens) = frame.sensor.distortion {
+            let coefficients: Vec<String> = lens.coefficients().iter().map(f64::to_string).collect();
+            line("lens", format!("{} {}", lens.model().name(), coefficients.join(" ")));
+        }
     }
     line("missing", format!("{:.1} % of the pixels", 100.0 * seen.missing));
     match seen.range {

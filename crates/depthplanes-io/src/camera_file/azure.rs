@@ -37,7 +37,7 @@ const COLOUR: [Mode; 6] = [
     mode([4096.0, 3072.0], [0.0, 0.0], (4096, 3072)),
 ];
 
-fn cameras(document: &Document<'_>) -> Option<&Vec<Value>> {
+fn cameras<'a>(document: &'a Document<'_>) -> Option<&'a Vec<Value>> {
     let root = document.tree()?.as_object()?;
     let inner = get(root, &["calibrationinformation"]).and_then(Value::as_object).unwrap_or(root);
     get(inner, &["cameras"])?.as_array()

@@ -7,7 +7,7 @@ use super::times::Times;
 use crate::frame::Frame;
 use depthplanes::methods::MethodInfo;
 use depthplanes::outline::Outlines;
-use depthplanes::{Coplanar, Detection, Intrinsics, Measure};
+use depthplanes::{Coplanar, Detection, Measure, Sensor};
 use std::path::Path;
 
 /// One row of [`OUTPUTS`](super::OUTPUTS).
