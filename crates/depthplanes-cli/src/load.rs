@@ -58,7 +58,10 @@ fn stereo(reading: &Reading, options: &ReadOptions) -> Outcome<Option<Stereo>> {
     let file = options.camera_file.as_ref();
     let known = file.and_then(|camera| camera.stereo);
     let baseline_m = reading.baseline.or(known.map(|rig| rig.baseline_m)).ok_or_else(|| lacking("--baseline"))?;
-    let focal = reading.focal.or(known.map(|rig| rig.focal_px)).or(options.intrinsics.or(file.map(|camera| camera.intrinsics)).map(|camera| camera.fx.abs()));
+    let focal = reading
+        .focal
+        .or(known.map(|rig| rig.focal_px))
+        .or(options.intrinsics.or(file.map(|camera| camera.intrinsics)).map(|camera| camera.fx.abs()));
     let focal_px = focal.ok_or_else(|| lacking("--focal (or --intrinsics)"))?;
     let doffs_px = reading.doffs.or(known.map(|rig| rig.doffs_px)).unwrap_or(0.0);
     Ok(Some(Stereo { focal_px, baseline_m, doffs_px }))

@@ -91,11 +91,8 @@ fn of_file(stated: &Stated<'_>, file: &CameraFile, map: Size) -> Result<MapCamer
     let mut notes = camera.notes.clone();
     notes.extend(checked(&intrinsics, map, size.is_some(), distortion.as_ref())?);
     notes.extend(lens_note(stated, camera, distortion.as_ref()));
-    let stereo = camera.stereo.map(|rig| Stereo {
-        focal_px: rig.focal_px * scale,
-        doffs_px: rig.doffs_px * scale,
-        ..rig
-    });
+    let stereo =
+        camera.stereo.map(|rig| Stereo { focal_px: rig.focal_px * scale, doffs_px: rig.doffs_px * scale, ..rig });
     Ok(MapCamera { intrinsics: Some(intrinsics), distortion, stereo, unit_m: camera.unit_m, notes })
 }
 
@@ -135,7 +132,8 @@ fn scaled_to(camera: &Intrinsics, size: Option<Size>, map: Size) -> Result<(Intr
 fn scaled(camera: &Intrinsics, from: Size, to: Size) -> Option<Intrinsics> {
     let [from, to] = [from, to].map(|(width, height)| [width, height].map(|side| side.max(1) as f64));
     let scale = [to[0] / from[0], to[1] / from[1]];
-    let is_alike = (from[1] * scale[0] - to[1]).abs() <= 1.0_f64.max(scale[0]) || (from[0] * scale[1] - to[0]).abs() <= 1.0;
+    let is_alike =
+        (from[1] * scale[0] - to[1]).abs() <= 1.0_f64.max(scale[0]) || (from[0] * scale[1] - to[0]).abs() <= 1.0;
     let centre = |c: f64, scale: f64| (c + 0.5) * scale - 0.5;
     is_alike.then(|| Intrinsics {
         fx: camera.fx * scale[0],

@@ -8,13 +8,13 @@ use depthplanes::noise::{NoiseModel, SensorNoise};
 use depthplanes::{Intrinsics, Sensor};
 
 use crate::camera_file::CameraFile;
-use crate::map_camera::{MapCamera, Stated, map_camera};
 use crate::encoding::{self, Given, Meaning, Stereo};
 use crate::error::{Error, Result};
 use crate::file_bytes::read_bytes;
 use crate::formats::{self, DecodeOptions, Image};
 use crate::frame::{Frame, Pixels};
 use crate::inspect;
+use crate::map_camera::{MapCamera, Stated, map_camera};
 use crate::presets::{self, PresetNoise, SensorPreset};
 
 /// What the user says of a map beside its bytes. The default says nothing.
@@ -199,6 +199,8 @@ fn scale_of_camera_file(camera: &MapCamera, encoding: &str, is_stated: bool, ima
     if is_stated || encoding != "millimetre" || !matches!(image.pixels, Pixels::U16(_)) {
         return None;
     }
-    image.warnings.push(format!("{units} map units are a metre, as the camera file states; --scale 1000 for millimetres"));
+    image
+        .warnings
+        .push(format!("{units} map units are a metre, as the camera file states; --scale 1000 for millimetres"));
     Some(units)
 }

@@ -130,7 +130,14 @@ impl Joiner {
     /// As [`Coplanar::new`].
     pub fn new(coplanar: Coplanar) -> Result<Self> {
         let limits = Coplanar::new(coplanar.angle_deg, coplanar.distance_m)?.limits();
-        Ok(Joiner { limits, unions: Vec::new(), members: Vec::new(), order: Vec::new(), labels: Vec::new(), pieces: None })
+        Ok(Joiner {
+            limits,
+            unions: Vec::new(),
+            members: Vec::new(),
+            order: Vec::new(),
+            labels: Vec::new(),
+            pieces: None,
+        })
     }
 
     /// Finds which planes are one; returns whether any are. `planes` are those of the labels 1, 2, .. in `runs`, by

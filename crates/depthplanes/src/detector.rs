@@ -242,7 +242,9 @@ impl Detector {
             Verdict::Plane { label, pixels, .. } if own > 0 => {
                 (*label, *pixels) = (own, out.planes[usize::from(own) - 1].pixel_count);
             }
-            Verdict::Plane { label, .. } | Verdict::Off { label, .. } | Verdict::Unexplained { label } => *label = rename(*label),
+            Verdict::Plane { label, .. } | Verdict::Off { label, .. } | Verdict::Unexplained { label } => {
+                *label = rename(*label)
+            }
             _ => (),
         }
         Ok(explanation)

@@ -52,14 +52,15 @@ fn through_lens(map: &AnyView<'_>, labels: &[u16], sensor: &Sensor) -> Result<(D
     let (mut found, names) = with_view!(map, map => described(map, labels.to_vec(), &plain));
     let mut lens = Lens::default();
     let straight = lens.labels_of_picture(map, sensor, &found.labels)?;
-    let describe = |picture: AnyView<'_>, sensor: Sensor, _: Option<&mut crate::coplanar::Joiner>, out: &mut Detection| {
-        let (described, names) = with_view!(picture, picture => described(&picture, straight, &sensor));
-        for (plane, &name) in described.planes.iter().zip(&names) {
-            found.planes[usize::from(name) - 1].metric = plane.metric;
-        }
-        *out = described;
-        Ok(())
-    };
+    let describe =
+        |picture: AnyView<'_>, sensor: Sensor, _: Option<&mut crate::coplanar::Joiner>, out: &mut Detection| {
+            let (described, names) = with_view!(picture, picture => described(&picture, straight, &sensor));
+            for (plane, &name) in described.planes.iter().zip(&names) {
+                found.planes[usize::from(name) - 1].metric = plane.metric;
+            }
+            *out = described;
+            Ok(())
+        };
     lens.through(map, sensor, None, describe, &mut Detection::default())?;
     Ok((found, names))
 }

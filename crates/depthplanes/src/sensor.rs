@@ -99,7 +99,13 @@ impl Sensor {
 impl Default for Sensor {
     /// Depth in millimetres, camera unknown.
     fn default() -> Self {
-        Sensor { measure: Measure::Depth { metres: 0.001 }, intrinsics: None, distortion: None, noise: None, smooth_noise: None }
+        Sensor {
+            measure: Measure::Depth { metres: 0.001 },
+            intrinsics: None,
+            distortion: None,
+            noise: None,
+            smooth_noise: None,
+        }
     }
 }
 

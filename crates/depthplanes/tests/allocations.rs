@@ -8,7 +8,9 @@ use depthplanes::methods::Parameters;
 use depthplanes::noise::{EnlargementFinder, RoundingFinder, Space};
 use depthplanes::outline::Outliner;
 use depthplanes::scene::{ScenePixels, Spec};
-use depthplanes::{Coplanar, DepthView, Detector, Distortion, DistortionModel, Intrinsics, Measure, Ngaf, Pixel, Planar, Sensor};
+use depthplanes::{
+    Coplanar, DepthView, Detector, Distortion, DistortionModel, Intrinsics, Measure, Ngaf, Pixel, Planar, Sensor,
+};
 use naive::Random;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

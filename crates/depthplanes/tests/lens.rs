@@ -1,6 +1,8 @@
 //! Planes behind lenses that distort: labels of the map's own pixels, metres as a pinhole camera would give them.
 
-use depthplanes::{Coplanar, DepthView, Detector, Distortion, DistortionModel, Hessian, Intrinsics, Measure, Planar, Sensor};
+use depthplanes::{
+    Coplanar, DepthView, Detector, Distortion, DistortionModel, Hessian, Intrinsics, Measure, Planar, Sensor,
+};
 use depthplanes::{describe_labels, outline::Outliner};
 
 const WIDTH: usize = 320;
@@ -124,7 +126,11 @@ fn explanations_curved_surfaces_parts_and_outlines_are_of_the_maps_pixels() {
     let (sensor, _) = lenses()[1];
     let (mut pixels, _) = map(&sensor, 5e-4);
     // A gap through the picture parts its planes.
-    pixels.iter_mut().enumerate().filter(|(at, _)| (140..170).contains(&(at % WIDTH))).for_each(|(_, value)| *value = 0);
+    pixels
+        .iter_mut()
+        .enumerate()
+        .filter(|(at, _)| (140..170).contains(&(at % WIDTH)))
+        .for_each(|(_, value)| *value = 0);
     let view = DepthView::new(&pixels, WIDTH, HEIGHT).unwrap();
     let mut detector = Detector::default().sensor(sensor).curved(true);
     let apart = detector.detect(view).unwrap().clone();
@@ -183,7 +189,12 @@ fn disparities_and_floats_behind_a_lens_have_the_same_planes() {
     let far = |z: f64| z > 60.0;
     let metres: Vec<f32> = depth.iter().map(|&z| if far(z) { f32::NAN } else { z as f32 }).collect();
     let of_metres = sensor.measure(Measure::depth(1.0).unwrap());
-    let found = Detector::default().sensor(of_metres).detect(DepthView::new(&metres, WIDTH, HEIGHT).unwrap()).unwrap().planes.len();
+    let found = Detector::default()
+        .sensor(of_metres)
+        .detect(DepthView::new(&metres, WIDTH, HEIGHT).unwrap())
+        .unwrap()
+        .planes
+        .len();
     assert_eq!(found, 3);
     let disparities: Vec<u16> = depth.iter().map(|&z| if far(z) { 0 } else { (25_600.0 / z).round() as u16 }).collect();
     let of_disparity = sensor.measure(Measure::InverseDepth { slope: 1.0 / 25_600.0, offset: 0.0 });

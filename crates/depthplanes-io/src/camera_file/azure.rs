@@ -64,10 +64,11 @@ pub(super) fn parse(document: &Document<'_>) -> Result<CameraFile> {
         };
         let Some(numbers) = cameras.iter().find(is_here).and_then(parameters) else { continue };
         for mode in modes {
-            all.push(of_mode(&numbers, mode)?.named(what).note(format!(
-                "{what} in its mode of {} x {} pixels is taken",
-                mode.size.0, mode.size.1
-            )));
+            all.push(
+                of_mode(&numbers, mode)?
+                    .named(what)
+                    .note(format!("{what} in its mode of {} x {} pixels is taken", mode.size.0, mode.size.1)),
+            );
         }
     }
     CameraFile::first_of(all)
@@ -99,11 +100,12 @@ pub(super) fn recognise_text(document: &Document<'_>) -> bool {
 pub(super) fn parse_text(document: &Document<'_>) -> Result<CameraFile> {
     let of = |name: &str| number(document.text, name).ok_or_else(|| unreadable(format!("it has no `{name}`")));
     let camera = pinhole(of("focallengthx")?, of("focallengthy")?, of("principalpointx")?, of("principalpointy")?)?;
-    let names = ["k1", "k2", "tangentialdistortioncoefficientx", "tangentialdistortioncoefficienty", "k3", "k4", "k5", "k6"];
+    let names =
+        ["k1", "k2", "tangentialdistortioncoefficientx", "tangentialdistortioncoefficienty", "k3", "k4", "k5", "k6"];
     let coefficients = names.map(|name| number(document.text, name).unwrap_or(0.0));
     let side = |name: &str| number(document.text, name).or_else(|| number(document.text, &format!("depth{name}")));
-    let camera = with_lens(camera, "", &coefficients, false)?.size(size(side("resolutionwidth"), side("resolutionheight")));
+    let camera =
+        with_lens(camera, "", &coefficients, false)?.size(size(side("resolutionwidth"), side("resolutionheight")));
     let count = pairs(document.text).filter(|(name, _)| name == "focallengthx").count();
     Ok(if count > 1 { camera.note(format!("of {count} cameras the first is taken")) } else { camera })
 }
-

@@ -166,7 +166,9 @@ pub(super) fn model(name: &str) -> Option<DistortionModel> {
         None
     } else if has(&["equi", "fisheye", "kannala", "kb4", "kb8"]) {
         Some(DistortionModel::KannalaBrandt)
-    } else if name.is_empty() || has(&["plumb", "radtan", "radial", "brown", "rational", "opencv", "pinhole", "perspective", "none"]) {
+    } else if name.is_empty()
+        || has(&["plumb", "radtan", "radial", "brown", "rational", "opencv", "pinhole", "perspective", "none"])
+    {
         Some(DistortionModel::BrownConrady)
     } else {
         None

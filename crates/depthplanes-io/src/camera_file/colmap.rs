@@ -11,7 +11,10 @@ fn rows(text: &str) -> impl Iterator<Item = Vec<&str>> {
 
 fn is_row(row: &[&str]) -> bool {
     let is_model = |name: &str| name.len() > 2 && name.chars().all(|c| c.is_ascii_uppercase() || c == '_');
-    row.len() >= 7 && row[0].parse::<u64>().is_ok() && is_model(row[1]) && row[2..].iter().all(|word| word.parse::<f64>().is_ok())
+    row.len() >= 7
+        && row[0].parse::<u64>().is_ok()
+        && is_model(row[1])
+        && row[2..].iter().all(|word| word.parse::<f64>().is_ok())
 }
 
 pub(super) fn recognise(document: &Document<'_>) -> bool {
@@ -54,7 +57,11 @@ fn camera(row: &[&str]) -> Result<CameraFile> {
         "OPENCV_FISHEYE" => (2, "fisheye", &[0, 1, 2, 3]),
         "SIMPLE_RADIAL_FISHEYE" => (1, "fisheye", &[0]),
         "RADIAL_FISHEYE" => (1, "fisheye", &[0, 1]),
-        _ => return Err(unreadable(format!("the camera model {model} of COLMAP is not known here; undistort the pictures"))),
+        _ => {
+            return Err(unreadable(format!(
+                "the camera model {model} of COLMAP is not known here; undistort the pictures"
+            )));
+        }
     };
     if params.len() != focals + 2 + lens.len() {
         let right = focals + 2 + lens.len();

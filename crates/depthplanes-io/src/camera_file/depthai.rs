@@ -12,8 +12,12 @@ use crate::error::Result;
 fn cameras<'a>(document: &'a Document<'_>) -> Option<Vec<(String, &'a Map<String, Value>)>> {
     let data = document.tree()?.as_object()?.get("cameraData")?;
     let mut all: Vec<(String, &Map<String, Value>)> = match data {
-        Value::Array(items) => items.iter().filter_map(|item| Some((item.get(0)?.to_string(), item.get(1)?.as_object()?))).collect(),
-        Value::Object(object) => object.iter().filter_map(|(key, value)| Some((key.clone(), value.as_object()?))).collect(),
+        Value::Array(items) => {
+            items.iter().filter_map(|item| Some((item.get(0)?.to_string(), item.get(1)?.as_object()?))).collect()
+        }
+        Value::Object(object) => {
+            object.iter().filter_map(|(key, value)| Some((key.clone(), value.as_object()?))).collect()
+        }
         _ => return None,
     };
     let socket = |name: &str| name.trim_matches('"').parse::<f64>().ok().map(|socket| socket as i64);

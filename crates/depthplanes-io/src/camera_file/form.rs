@@ -34,7 +34,10 @@ impl<'a> Document<'a> {
     }
 
     pub(super) fn is_json(&self) -> bool {
-        self.text.starts_with('{') || self.text.starts_with("[{") || self.text.starts_with("[[") || self.text.starts_with("[\n")
+        self.text.starts_with('{')
+            || self.text.starts_with("[{")
+            || self.text.starts_with("[[")
+            || self.text.starts_with("[\n")
     }
 
     pub(super) fn read(&self) -> &std::result::Result<Value, String> {
@@ -59,4 +62,3 @@ pub(super) const fn form(
 ) -> CameraForm {
     CameraForm { name, about, sample, recognise, parse }
 }
-

@@ -7,7 +7,8 @@ use crate::encoding::Stereo;
 use crate::error::Result;
 
 pub(super) fn recognise(document: &Document<'_>) -> bool {
-    numbers(document.text, "p0").is_some_and(|p| p.len() == 12) || numbers(document.text, "p2").is_some_and(|p| p.len() == 12)
+    numbers(document.text, "p0").is_some_and(|p| p.len() == 12)
+        || numbers(document.text, "p2").is_some_and(|p| p.len() == 12)
 }
 
 /// The left colour camera, P2, whose maps are those of the data set.

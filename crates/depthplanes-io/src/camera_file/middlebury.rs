@@ -9,13 +9,14 @@ use crate::error::Result;
 
 /// What stands behind `key=`: a matrix in brackets, or a word.
 fn value<'a>(text: &'a str, key: &str) -> Option<&'a str> {
-    let starts = text.match_indices(key).filter(|(at, _)| !text[..*at].ends_with(|c: char| c.is_alphanumeric() || c == '_'));
-    starts.filter_map(|(at, _)| text[at + key.len()..].trim_start().strip_prefix('=')).map(str::trim_start).find_map(|rest| {
-        match rest.strip_prefix('[') {
+    let starts =
+        text.match_indices(key).filter(|(at, _)| !text[..*at].ends_with(|c: char| c.is_alphanumeric() || c == '_'));
+    starts.filter_map(|(at, _)| text[at + key.len()..].trim_start().strip_prefix('=')).map(str::trim_start).find_map(
+        |rest| match rest.strip_prefix('[') {
             Some(inner) => inner.split(']').next(),
             None => rest.split_whitespace().next(),
-        }
-    })
+        },
+    )
 }
 
 pub(super) fn recognise(document: &Document<'_>) -> bool {
@@ -23,7 +24,8 @@ pub(super) fn recognise(document: &Document<'_>) -> bool {
 }
 
 pub(super) fn parse(document: &Document<'_>) -> Result<CameraFile> {
-    let number = |key: &str| value(document.text, key).and_then(|value| value.trim_end_matches([',', ';']).parse::<f64>().ok());
+    let number =
+        |key: &str| value(document.text, key).and_then(|value| value.trim_end_matches([',', ';']).parse::<f64>().ok());
     let numbers = value(document.text, "cam0").and_then(words).filter(|numbers| numbers.len() == 9);
     let camera = matrix(&numbers.ok_or_else(|| unreadable("cam0 is not a matrix of 9 numbers"))?)?;
     let focal_px = camera.intrinsics.fx;

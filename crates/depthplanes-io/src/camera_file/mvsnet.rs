@@ -16,6 +16,7 @@ pub(super) fn recognise(document: &Document<'_>) -> bool {
 pub(super) fn parse(document: &Document<'_>) -> Result<CameraFile> {
     let rows = after(document.text, "intrinsic").filter(|line| !line.is_empty()).take(3);
     let rows: Option<Vec<Vec<f64>>> = rows.map(|row| words(row).filter(|row| row.len() == 3)).collect();
-    let rows = rows.filter(|rows| rows.len() == 3).ok_or_else(|| unreadable("no 3 x 3 matrix stands below `intrinsic`"))?;
+    let rows =
+        rows.filter(|rows| rows.len() == 3).ok_or_else(|| unreadable("no 3 x 3 matrix stands below `intrinsic`"))?;
     matrix(&rows.concat())
 }

@@ -28,7 +28,8 @@ pub(super) fn parse(document: &Document<'_>) -> Result<CameraFile> {
     let is_rectified = model.eq_ignore_ascii_case("rectified");
     let lens = |name: &str| of(name).unwrap_or(0.0);
     let is_fisheye = super::camera::model(model) == Some(depthplanes::DistortionModel::KannalaBrandt);
-    let names: &[&str] = if is_fisheye { &["k1", "k2", "k3", "k4"] } else { &["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"] };
+    let names: &[&str] =
+        if is_fisheye { &["k1", "k2", "k3", "k4"] } else { &["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"] };
     let coefficients: Vec<f64> = names.iter().map(|name| lens(name)).collect();
     let mut camera = if is_rectified { camera } else { with_lens(camera, model, &coefficients, false)? };
     let side = |name: &str| any(&format!("Camera.{name}")).or_else(|| of(name));

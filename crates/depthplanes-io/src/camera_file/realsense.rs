@@ -17,7 +17,10 @@ pub(super) fn parse(document: &Document<'_>) -> Result<CameraFile> {
         return camera(&blocks[0]);
     }
     if depth.is_empty() {
-        return Err(unreadable(format!("of {} cameras none is of depth; give that of the map with --intrinsics", blocks.len())));
+        return Err(unreadable(format!(
+            "of {} cameras none is of depth; give that of the map with --intrinsics",
+            blocks.len()
+        )));
     }
     CameraFile::first_of(depth.into_iter().map(|block| camera(block)).collect::<Result<Vec<_>>>()?)
 }

@@ -26,7 +26,10 @@ fn lines(text: &str) -> Option<Vec<Vec<f64>>> {
 
 fn is_name(text: &str) -> bool {
     let text = text.trim();
-    !text.is_empty() && text.len() < 40 && text.chars().all(|c| c.is_alphanumeric() || "_.-".contains(c)) && words(text).is_none()
+    !text.is_empty()
+        && text.len() < 40
+        && text.chars().all(|c| c.is_alphanumeric() || "_.-".contains(c))
+        && words(text).is_none()
 }
 
 /// One line of names in front of a matrix is no form of its own: at most one line may have a name.
@@ -57,12 +60,17 @@ pub(super) fn parse(document: &Document<'_>) -> Result<CameraFile> {
             match all[..] {
                 [_, _, _, x, ..] if all.len() == 12 && x < 0.0 => {
                     let focal_px = camera.intrinsics.fx;
-                    Ok(CameraFile { stereo: Some(Stereo { focal_px, baseline_m: -x / focal_px, doffs_px: 0.0 }), ..camera })
+                    Ok(CameraFile {
+                        stereo: Some(Stereo { focal_px, baseline_m: -x / focal_px, doffs_px: 0.0 }),
+                        ..camera
+                    })
                 }
                 _ => Ok(camera),
             }
         }
-        _ => Err(unreadable(format!("{} numbers; 4 (fx,fy,cx,cy), or 9, 12 or 16 of a matrix are expected", all.len()))),
+        _ => {
+            Err(unreadable(format!("{} numbers; 4 (fx,fy,cx,cy), or 9, 12 or 16 of a matrix are expected", all.len())))
+        }
     }
 }
 

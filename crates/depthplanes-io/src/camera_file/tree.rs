@@ -17,20 +17,61 @@ const FOCAL: [&[&str]; 2] = [
     &["fy", "fly", "focaly", "focallengthy", "alphay", "ffy"],
 ];
 const BOTH_FOCALS: &[&str] = &["f", "focal", "focallength", "focallengths", "fl"];
-const CENTRE: [&[&str]; 2] =
-    [&["cx", "ppx", "principalx", "principalpointx", "centerx", "u0", "ox", "px"], &["cy", "ppy", "principaly", "principalpointy", "centery", "v0", "oy", "py"]];
+const CENTRE: [&[&str]; 2] = [
+    &["cx", "ppx", "principalx", "principalpointx", "centerx", "u0", "ox", "px"],
+    &["cy", "ppy", "principaly", "principalpointy", "centery", "v0", "oy", "py"],
+];
 const BOTH_CENTRES: &[&str] = &["principalpoint", "pp", "center", "opticalcenter", "principal"];
-const MATRIX: &[&str] = &["k", "mtx", "m1", "m2", "k1", "k2", "kl", "kr", "kdepth", "depthk", "kir", "krgb", "kcolor", "camk", "cammat", "a"];
+const MATRIX: &[&str] = &[
+    "k", "mtx", "m1", "m2", "k1", "k2", "kl", "kr", "kdepth", "depthk", "kir", "krgb", "kcolor", "camk", "cammat", "a",
+];
 const SIDES: [&[&str]; 2] = [
     &["width", "w", "imagewidth", "imgwidth", "resolutionwidth", "resx", "sizex", "dw"],
     &["height", "h", "imageheight", "imgheight", "resolutionheight", "resy", "sizey", "dh"],
 ];
-const BOTH_SIDES: &[&str] = &["resolution", "imageresolution", "imagesize", "imgsize", "size", "imageshape", "shape", "imagedimensions", "dimensions", "dims", "videosize"];
-const LENS: &[&str] = &[
-    "d", "distortioncoefficients", "distortioncoeffs", "distortioncoeff", "distcoeffs", "distcoeff", "coeffs", "coefficients", "distortion",
-    "dist", "distortionparams", "distortionparameters", "distortionvector", "distcoefs", "distcoef", "distortions", "d1", "dl",
+const BOTH_SIDES: &[&str] = &[
+    "resolution",
+    "imageresolution",
+    "imagesize",
+    "imgsize",
+    "size",
+    "imageshape",
+    "shape",
+    "imagedimensions",
+    "dimensions",
+    "dims",
+    "videosize",
 ];
-const MODELS: &[&str] = &["distortionmodel", "distortiontype", "lensmodel", "distortion", "model", "cameramodel", "cameratype", "projectionmodel"];
+const LENS: &[&str] = &[
+    "d",
+    "distortioncoefficients",
+    "distortioncoeffs",
+    "distortioncoeff",
+    "distcoeffs",
+    "distcoeff",
+    "coeffs",
+    "coefficients",
+    "distortion",
+    "dist",
+    "distortionparams",
+    "distortionparameters",
+    "distortionvector",
+    "distcoefs",
+    "distcoef",
+    "distortions",
+    "d1",
+    "dl",
+];
+const MODELS: &[&str] = &[
+    "distortionmodel",
+    "distortiontype",
+    "lensmodel",
+    "distortion",
+    "model",
+    "cameramodel",
+    "cameratype",
+    "projectionmodel",
+];
 
 /// A name without case and signs.
 pub(super) fn plain(name: &str) -> String {
@@ -81,7 +122,8 @@ pub(super) fn numbers(value: &Value) -> Option<Vec<f64>> {
 fn is_matrix(name: &str) -> bool {
     let name = plain(name);
     let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
-    (has(&["intrinsic", "cameramatrix", "cammatrix", "cameramat", "calibrationmatrix", "kmatrix"]) || MATRIX.contains(&name.as_str()))
+    (has(&["intrinsic", "cameramatrix", "cammatrix", "cameramat", "calibrationmatrix", "kmatrix"])
+        || MATRIX.contains(&name.as_str()))
         && !has(&["extrinsic", "inv"])
 }
 
@@ -138,7 +180,9 @@ fn walk<'a>(
             above.push(object);
             for (key, camera) in cameras_of(object, above) {
                 match camera {
-                    Ok(camera) => found.push(Found { path: if key.is_empty() { path.into() } else { below(&key) }, camera }),
+                    Ok(camera) => {
+                        found.push(Found { path: if key.is_empty() { path.into() } else { below(&key) }, camera })
+                    }
                     Err(error) => *wrong = Some(wrong.take().unwrap_or(error)),
                 }
             }
@@ -170,7 +214,9 @@ fn cameras_of(object: &Object, above: &[&Object]) -> Vec<(String, Result<CameraF
         };
         all.push((key.clone(), camera));
     }
-    all.into_iter().map(|(key, camera)| (key, camera.and_then(|camera| complete(camera, object, above, false)))).collect()
+    all.into_iter()
+        .map(|(key, camera)| (key, camera.and_then(|camera| complete(camera, object, above, false))))
+        .collect()
 }
 
 /// `fx, fy, cx, cy` under any of their names.
@@ -196,8 +242,10 @@ fn by_names(object: &Object) -> Option<Result<CameraFile>> {
 /// binning and region of interest applied as image_geometry does. `P[3]` is `-fx * baseline` for the right camera of a
 /// rig.
 fn ros(object: &Object) -> Option<Result<(CameraFile, bool)>> {
-    let p = numbers(get(object, &["p", "projectionmatrix"])?).filter(|p| p.len() == 12 && p.iter().any(|&x| x != 0.0))?;
-    let k = get(object, &["k", "cameramatrix"]).and_then(numbers).filter(|k| k.len() == 9 && k.iter().any(|&x| x != 0.0));
+    let p =
+        numbers(get(object, &["p", "projectionmatrix"])?).filter(|p| p.len() == 12 && p.iter().any(|&x| x != 0.0))?;
+    let k =
+        get(object, &["k", "cameramatrix"]).and_then(numbers).filter(|k| k.len() == 9 && k.iter().any(|&x| x != 0.0));
     Some(ros_camera(object, &p, k.as_deref()).map(|camera| (camera, true)))
 }
 
@@ -228,7 +276,8 @@ fn ros_camera(object: &Object, p: &[f64], k: Option<&[f64]>) -> Result<CameraFil
 
 /// Binning and region of interest, as image_geometry applies them to K and P.
 fn binned(camera: &mut CameraFile, object: &Object) {
-    let binning = [["binningx"], ["binningy"]].map(|names| number_of(object, &names).filter(|&b| b > 1.0).unwrap_or(1.0));
+    let binning =
+        [["binningx"], ["binningy"]].map(|names| number_of(object, &names).filter(|&b| b > 1.0).unwrap_or(1.0));
     let roi = get(object, &["roi"]).and_then(Value::as_object);
     let of_roi = |name: &str| roi.and_then(|roi| number_of(roi, &[name])).filter(|&n| n > 0.0);
     let offset = [of_roi("xoffset").unwrap_or(0.0), of_roi("yoffset").unwrap_or(0.0)];
@@ -250,8 +299,10 @@ fn binned(camera: &mut CameraFile, object: &Object) {
     if let Some(rig) = &mut camera.stereo {
         rig.focal_px /= binning[0];
     }
-    let side = |roi: Option<f64>, full: Option<usize>, binning: f64| Some((roi.or(full.map(|n| n as f64))? / binning).floor());
-    camera.size = size(side(width, full.map(|size| size.0), binning[0]), side(height, full.map(|size| size.1), binning[1]));
+    let side =
+        |roi: Option<f64>, full: Option<usize>, binning: f64| Some((roi.or(full.map(|n| n as f64))? / binning).floor());
+    camera.size =
+        size(side(width, full.map(|size| size.0), binning[0]), side(height, full.map(|size| size.1), binning[1]));
     if camera.size != full {
         camera.notes.push("binning and region of interest (roi) are applied".into());
     }
@@ -316,8 +367,15 @@ fn model_of(near: &[&Object]) -> String {
             Value::String(name) if words(name).is_none() && !name.is_empty() => Some(name.clone()),
             // RealSense's numbers of its models.
             Value::Number(number) if *name == "model" => Some(
-                (*["none", "modified brown conrady", "inverse brown conrady", "ftheta", "brown conrady", "kannala brandt"]
-                    .get(number.as_f64()? as usize)?)
+                (*[
+                    "none",
+                    "modified brown conrady",
+                    "inverse brown conrady",
+                    "ftheta",
+                    "brown conrady",
+                    "kannala brandt",
+                ]
+                .get(number.as_f64()? as usize)?)
                 .to_string(),
             ),
             _ => None,
@@ -331,7 +389,8 @@ fn unit_m(object: &Object) -> Option<f64> {
     if let Some(units) = number_of(object, &["depthmapfactor", "depthfactor"]) {
         return (units > 0.0).then(|| units.recip());
     }
-    let scale = number_of(object, &["depthscale", "depthunits", "depthunit", "integerdepthscale"]).filter(|&scale| scale > 0.0)?;
+    let scale = number_of(object, &["depthscale", "depthunits", "depthunit", "integerdepthscale"])
+        .filter(|&scale| scale > 0.0)?;
     if get(object, &["camk"]).is_some() || get(object, &["cx"]).is_some() && scale == 1.0 {
         return Some(0.001 * scale);
     }
@@ -344,7 +403,9 @@ fn unit_m(object: &Object) -> Option<f64> {
 
 /// The one camera of those found.
 fn one_of(mut found: Vec<Found>) -> Result<CameraFile> {
-    let same = |a: &CameraFile, b: &CameraFile| a.intrinsics == b.intrinsics && a.distortion == b.distortion && a.size == b.size;
+    let same = |a: &CameraFile, b: &CameraFile| {
+        a.intrinsics == b.intrinsics && a.distortion == b.distortion && a.size == b.size
+    };
     let mut distinct: Vec<usize> = Vec::new();
     for at in 0..found.len() {
         if !distinct.iter().any(|&other| same(&found[other].camera, &found[at].camera)) {
@@ -374,8 +435,12 @@ fn one_of(mut found: Vec<Found>) -> Result<CameraFile> {
     if distinct.len() == 1 {
         return Ok(camera);
     }
-    let others: Vec<&str> =
-        distinct.iter().filter(|&&at| at != taken).filter_map(|&at| Some(found.get(at)?.path.as_str())).take(5).collect();
+    let others: Vec<&str> = distinct
+        .iter()
+        .filter(|&&at| at != taken)
+        .filter_map(|&at| Some(found.get(at)?.path.as_str()))
+        .take(5)
+        .collect();
     let note = format!("of {} cameras `{path}` is taken, not {}", distinct.len(), others.join(", "));
     Ok(camera.named(path).note(note))
 }
@@ -388,5 +453,8 @@ fn several(found: &[Found], distinct: &[usize]) -> crate::Error {
     };
     let listed: Vec<String> = distinct.iter().take(5).map(shown).collect();
     let more = if distinct.len() > 5 { " and others" } else { "" };
-    unreadable(format!("it has several cameras that differ: {}{more}; give the one of the map with --intrinsics", listed.join("; ")))
+    unreadable(format!(
+        "it has several cameras that differ: {}{more}; give the one of the map with --intrinsics",
+        listed.join("; ")
+    ))
 }

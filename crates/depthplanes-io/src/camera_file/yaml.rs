@@ -126,7 +126,8 @@ fn item(lines: &[Line<'_>], at: &mut usize, line: &Line<'_>, depth: usize) -> Re
         return scalar_or_flow(rest);
     }
     // The dash counts as an indent of the lines below.
-    let end = lines[*at + 1..].iter().position(|other| other.indent <= line.indent).map_or(lines.len(), |n| *at + 1 + n);
+    let end =
+        lines[*at + 1..].iter().position(|other| other.indent <= line.indent).map_or(lines.len(), |n| *at + 1 + n);
     let mut own: Vec<Line<'_>> = vec![Line { indent: inner, text: rest.into() }];
     own.extend(lines[*at + 1..end].iter().map(|line| Line { indent: line.indent, text: line.text.as_ref().into() }));
     let mut here = 0;

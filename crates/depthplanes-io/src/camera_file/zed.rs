@@ -41,7 +41,8 @@ pub(super) fn recognise(document: &Document<'_>) -> bool {
 pub(super) fn parse(document: &Document<'_>) -> Result<CameraFile> {
     let sections = sections(document.text);
     let stereo = sections.iter().find(|(name, _)| name == "STEREO").map(|(_, lines)| lines.as_str());
-    let baseline_m = stereo.and_then(|lines| number(lines, "baseline")).map(f64::abs).filter(|&mm| mm > 1.0).map(|mm| mm / 1000.0);
+    let baseline_m =
+        stereo.and_then(|lines| number(lines, "baseline")).map(f64::abs).filter(|&mm| mm > 1.0).map(|mm| mm / 1000.0);
     let mut cameras = Vec::new();
     for (name, lines) in &sections {
         let Some(mode) = name.strip_prefix("LEFT_CAM_") else { continue };
@@ -52,7 +53,11 @@ pub(super) fn parse(document: &Document<'_>) -> Result<CameraFile> {
         let mut camera = with_lens(camera, "", &coefficients, true)?.named(format!("[{name}]"));
         camera.size = SIZES.iter().find(|(known, _)| *known == mode).map(|(_, size)| *size);
         camera.stereo = baseline_m.map(|baseline_m| Stereo { focal_px, baseline_m, doffs_px: 0.0 });
-        cameras.push(camera.note(format!("[{name}] is taken; the rectified camera of ZED's depth differs from it by a few pixels")));
+        cameras.push(
+            camera.note(format!(
+                "[{name}] is taken; the rectified camera of ZED's depth differs from it by a few pixels"
+            )),
+        );
     }
     CameraFile::first_of(cameras)
 }

@@ -52,9 +52,8 @@ impl Lens {
         let mut found = std::mem::take(found);
         found.parts.clear();
         let (mut carrier, mut pieces) = (std::mem::take(carrier), std::mem::take(pieces));
-        let result = self.with_picture(map, sensor, |picture, sensor| {
-            detect(picture, sensor, joiner.as_deref_mut(), &mut found)
-        });
+        let result = self
+            .with_picture(map, sensor, |picture, sensor| detect(picture, sensor, joiner.as_deref_mut(), &mut found));
         if result.is_ok() {
             let rectifier = self.rectifier.as_ref().expect("made for the picture");
             let plain = Sensor { intrinsics: None, distortion: None, ..*sensor };

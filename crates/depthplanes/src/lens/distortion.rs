@@ -299,7 +299,8 @@ mod tests {
         };
         let (x, y, r2) = (0.5, -0.25, 0.3125f64);
         let radial = 1.0 + 0.1 * r2 - 0.2 * r2 * r2 + 0.05 * r2.powi(3);
-        let tangential = [2.0 * 0.01 * x * y + 0.02 * (r2 + 2.0 * x * x), 0.01 * (r2 + 2.0 * y * y) + 2.0 * 0.02 * x * y];
+        let tangential =
+            [2.0 * 0.01 * x * y + 0.02 * (r2 + 2.0 * x * x), 0.01 * (r2 + 2.0 * y * y) + 2.0 * 0.02 * x * y];
         let brown = [0.1, -0.2, 0.01, 0.02, 0.05];
         let expected = [x * radial + tangential[0], y * radial + tangential[1]];
         near(lens(BrownConrady, &brown).distort([x, y]), expected);
