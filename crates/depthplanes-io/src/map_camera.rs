@@ -189,9 +189,13 @@ fn checked(camera: &Intrinsics, map: Size, is_size_stated: bool, lens: Option<&D
     let is_middle = |at: [f64; 2]| off(at).iter().all(|&off| off <= FAR);
     let is_outside = [cx, cy].iter().zip(sides).any(|(&c, side)| c < -0.5 || c > side - 0.5);
     let mut notes = Vec::new();
-    if !is_middle([cx, cy]) && is_middle([fx, fy]) && (cx - cy).abs() <= 0.05 * cx.abs() && fx != fy {
+    // fx and fy stand where cx and cy belong: those are equal, these are the middle of the map or of a picture of its shape.
+    let is_shape = ((2.0 * fx + 1.0) / (2.0 * fy + 1.0) / (sides[0] / sides[1]) - 1.0).abs() < 0.02;
+    let is_swapped = (cx - cy).abs() <= 0.05 * cx.abs() && fx != fy && (is_middle([fx, fy]) || is_shape && is_outside);
+    if !is_middle([cx, cy]) && is_swapped {
         let swapped = Intrinsics { fx: cx, fy: cy, cx: fx, cy: fy };
-        let accepted = format!("focal lengths first, then the principal point: {}", flag(&swapped));
+        let own = whole_picture(&swapped, map).map_or(swapped, |(_, scaled)| scaled);
+        let accepted = format!("focal lengths first, then the principal point: {}", flag(&own));
         return Err(Error::parameter("camera", format_args!("{fx},{fy},{cx},{cy}"), accepted));
     }
     let guess = whole_picture(camera, map);

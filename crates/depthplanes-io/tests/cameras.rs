@@ -223,6 +223,35 @@ const SPECIMENS: &[(&str, &str, [f64; 4], Option<(usize, usize)>)] = &[
 ];
 
 #[test]
+fn lenses_of_opencv_files_are_those_of_their_cameras() {
+    let xml = |names: [&str; 4]| {
+        let [a, da, b, db] = names;
+        let matrix = |name: &str, data: &str| {
+            format!(
+                "<{name} type_id=\"opencv-matrix\">\n<rows>3</rows><cols>3</cols><dt>d</dt>\n<data>\n{data}</data></{name}>\n"
+            )
+        };
+        let all = [matrix(a, "525. 0. 319.5 0. 526. 239.5 0. 0. 1."), matrix(da, "0.1 -0.2 0. 0. 0.05")];
+        let others = [matrix(b, "530. 0. 320.5 0. 530. 240.5 0. 0. 1."), matrix(db, "0.3 -0.4 0. 0. 0.07")];
+        let others = if b.is_empty() { String::new() } else { others.concat() };
+        format!("<?xml version=\"1.0\"?>\n<opencv_storage>\n{}{others}</opencv_storage>\n", all.concat())
+    };
+    let one = parse(&xml(["Camera_Matrix", "Distortion_Coefficients", "", ""])).unwrap();
+    assert!(close(one.intrinsics, VGA));
+    assert_eq!(one.distortion.unwrap().coefficients()[4], 0.05);
+    let left = parse(&xml(["M1", "D1", "M2", "D2"])).unwrap();
+    assert!(close(left.intrinsics, VGA) && left.notes.iter().any(|note| note.contains("M1")));
+    assert_eq!(left.distortion.unwrap().coefficients()[0], 0.1);
+    let depth = parse(&xml(["depth_intrinsics", "depth_distortion", "rgb_intrinsics", "rgb_distortion"])).unwrap();
+    assert_eq!(depth.distortion.unwrap().coefficients()[0], 0.1);
+    // Depth may be of the infrared camera, or turned into the colour camera's picture.
+    assert!(parse(&xml(["RGB_intrinsic_params", "RGB_dist", "IR_intrinsic_params", "IR_dist"])).is_err());
+    for wrong in ["<a>", "<a></b>", "</a>", "<a", "<?xml?>", "<!--"] {
+        assert!(parse(wrong).is_err(), "{wrong}");
+    }
+}
+
+#[test]
 fn every_form_gives_its_camera() {
     for (form, text, right, size) in SPECIMENS {
         let (camera, found) = parse_as(text).unwrap_or_else(|error| panic!("{form}: {error}\n{text}"));
@@ -350,6 +379,8 @@ fn cameras_that_cannot_be_the_maps_are_refused_and_unlikely_ones_noted() {
     let plain = |numbers: &str, size| framed(numbers, size, |_| ());
     let error = plain("319.5,239.5,525,525", (640, 480)).unwrap_err().to_string();
     assert!(error.contains("--intrinsics=525,525,319.5,239.5"), "{error}");
+    let error = plain("319.5,239.5,525,525", (320, 240)).unwrap_err().to_string();
+    assert!(error.contains("--intrinsics=262.5,262.5,159.5,119.5"), "{error}");
     let error = plain("525,525,700,239.5", (640, 480)).unwrap_err().to_string();
     assert!(error.contains("principal point") && error.contains("--camera-size"), "{error}");
     let noted = |numbers: &str, size| plain(numbers, size).unwrap().warnings.join("; ");

@@ -95,6 +95,26 @@ fn planes_behind_a_lens_are_those_of_the_room() {
     }
 }
 
+/// Eighths of a pixel of disparity of a rig of 43.5 pixels times metres, in millimetres: steps of 46 mm at 4 m.
+#[test]
+fn planes_in_coarse_steps_behind_a_lens_are_those_of_the_room() {
+    for (sensor, name) in lenses() {
+        let (depth, _) = seen(&sensor);
+        let stepped =
+            |z: &f64| if *z < 20.0 { (1000.0 * 43.5 * 8.0 / (43.5 * 8.0 / z).round()).round() as u16 } else { 0 };
+        let pixels: Vec<u16> = depth.iter().map(stepped).collect();
+        let mut detector = Detector::default().sensor(sensor);
+        let found = detector.detect(DepthView::new(&pixels, WIDTH, HEIGHT).unwrap()).unwrap();
+        println!("{name}: {} planes, {:.4}", found.planes.len(), found.labelled_share());
+        assert_eq!(found.planes.len(), 3, "{name}");
+        assert!(found.labelled_share() > 0.9, "{name}: {}", found.labelled_share());
+        for plane in room() {
+            let near = |given: f64| (given / plane.distance - 1.0).abs() < 0.02;
+            assert!(found.planes.iter().any(|found| near(found.distance_m().unwrap())), "{name}: {plane:?}");
+        }
+    }
+}
+
 #[test]
 fn a_lens_of_zeros_changes_nothing() {
     let (sensor, _) = lenses()[0];

@@ -5,7 +5,7 @@ use std::cell::OnceCell;
 use serde_json::Value;
 
 use super::camera::CameraFile;
-use super::yaml;
+use super::{xml, yaml};
 use crate::error::Result;
 
 /// One form of camera files.
@@ -44,6 +44,7 @@ impl<'a> Document<'a> {
         self.tree.get_or_init(|| match serde_json::from_str(self.text) {
             Ok(tree) => Ok(tree),
             Err(error) if self.is_json() => Err(error.to_string()),
+            Err(_) if self.text.starts_with('<') => xml::parse(self.text),
             Err(_) => yaml::parse(self.text),
         })
     }

@@ -16,6 +16,7 @@ mod orbslam;
 mod realsense;
 mod text;
 mod tree;
+mod xml;
 mod yaml;
 mod zed;
 

@@ -198,7 +198,7 @@ fn walk<'a>(
 /// The cameras that an object states by itself: by names of single numbers, or by matrices.
 fn cameras_of(object: &Object, above: &[&Object]) -> Vec<(String, Result<CameraFile>)> {
     if let Some(camera) = ros(object) {
-        return vec![(String::new(), camera.and_then(|(camera, done)| complete(camera, object, above, done)))];
+        return vec![(String::new(), camera.and_then(|camera| complete(camera, object, above, None)))];
     }
     let mut all = Vec::new();
     if let Some(camera) = by_names(object) {
@@ -215,7 +215,10 @@ fn cameras_of(object: &Object, above: &[&Object]) -> Vec<(String, Result<CameraF
         all.push((key.clone(), camera));
     }
     all.into_iter()
-        .map(|(key, camera)| (key, camera.and_then(|camera| complete(camera, object, above, false))))
+        .map(|(key, camera)| {
+            let camera = camera.and_then(|camera| complete(camera, object, above, Some(&key)));
+            (key, camera)
+        })
         .collect()
 }
 
@@ -241,12 +244,12 @@ fn by_names(object: &Object) -> Option<Result<CameraFile>> {
 /// A ROS camera: `K` (3 x 3) of the raw picture with `D`, `P` (3 x 4) of the rectified one unless it is all 0, with
 /// binning and region of interest applied as image_geometry does. `P[3]` is `-fx * baseline` for the right camera of a
 /// rig.
-fn ros(object: &Object) -> Option<Result<(CameraFile, bool)>> {
+fn ros(object: &Object) -> Option<Result<CameraFile>> {
     let p =
         numbers(get(object, &["p", "projectionmatrix"])?).filter(|p| p.len() == 12 && p.iter().any(|&x| x != 0.0))?;
     let k =
         get(object, &["k", "cameramatrix"]).and_then(numbers).filter(|k| k.len() == 9 && k.iter().any(|&x| x != 0.0));
-    Some(ros_camera(object, &p, k.as_deref()).map(|camera| (camera, true)))
+    Some(ros_camera(object, &p, k.as_deref()))
 }
 
 fn ros_camera(object: &Object, p: &[f64], k: Option<&[f64]>) -> Result<CameraFile> {
@@ -308,13 +311,15 @@ fn binned(camera: &mut CameraFile, object: &Object) {
     }
 }
 
-/// With size, lens, unit, baseline and binning, each as near above the camera as it is stated.
-fn complete(camera: CameraFile, object: &Object, above: &[&Object], lens_done: bool) -> Result<CameraFile> {
+/// With size, lens, unit, baseline and binning, each as near above the camera as it is stated. `key`: the name of the
+/// matrix, beside which that of the lens stands; none if the lens is known.
+fn complete(camera: CameraFile, object: &Object, above: &[&Object], key: Option<&str>) -> Result<CameraFile> {
     let centre = [camera.intrinsics.cx, camera.intrinsics.cy];
     let mut camera = camera.size(above.iter().rev().find_map(|object| size_of(object, centre)));
     let near: Vec<&Object> = above.iter().rev().copied().collect();
-    if !lens_done {
-        let coefficients = lens(object).or_else(|| near.get(1).and_then(|object| lens(object))).unwrap_or_default();
+    if let Some(key) = key {
+        let coefficients =
+            lens_beside(object, key).or_else(|| near.get(1).and_then(|object| lens(object))).unwrap_or_default();
         camera = with_lens(camera, &model_of(&near), &coefficients, false)?;
     }
     binned(&mut camera, object);
@@ -339,6 +344,26 @@ fn size_of(object: &Object, [cx, cy]: [f64; 2]) -> Option<(usize, usize)> {
             if off(b, a) < off(a, b) { size(Some(b), Some(a)) } else { size(Some(a), Some(b)) }
         }
     })
+}
+
+/// The coefficients that belong to the matrix of a name: of several the ones whose name begins or ends as the matrix's.
+fn lens_beside(object: &Object, key: &str) -> Option<Vec<f64>> {
+    let key = plain(key);
+    let is_lens = |name: &str| {
+        (name.contains("dist") && !name.contains("model")) || ["d", "d1", "d2", "dl", "dr"].contains(&name)
+    };
+    let all: Vec<(String, Vec<f64>)> = object
+        .iter()
+        .filter_map(|(name, value)| Some((plain(name), numbers(value)?)))
+        .filter(|(name, numbers)| is_lens(name) && numbers.len() > 1)
+        .collect();
+    if all.len() < 2 {
+        return all.into_iter().next().map(|(_, numbers)| numbers).or_else(|| lens(object));
+    }
+    let tail = |name: &str| name.chars().last().filter(|c| "12lrt".contains(*c));
+    let same_end = all.iter().find(|(name, _)| tail(name).is_some() && tail(name) == tail(&key));
+    let same_start = || all.iter().find(|(name, _)| name.get(..2) == key.get(..2));
+    same_end.or_else(same_start).map(|(_, numbers)| numbers.clone())
 }
 
 /// The coefficients of a lens in OpenCV's order.
