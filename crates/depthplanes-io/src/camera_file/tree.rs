@@ -260,9 +260,10 @@ fn ros_camera(object: &Object, p: &[f64], k: Option<&[f64]>) -> Result<CameraFil
     }
     let Some(k) = k else { return Ok(rectified) };
     let raw = matrix(k)?;
-    let coefficients = lens(object).unwrap_or_default();
+    let coefficients = lens(object, &model_of(&[object])).unwrap_or_default();
     let is_bent = coefficients.iter().any(|&k| k != 0.0);
-    if raw.intrinsics == rectified.intrinsics {
+    let [a, b] = [raw.intrinsics, rectified.intrinsics].map(|c| [c.fx, c.fy, c.cx, c.cy]);
+    if a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.01) {
         let stereo = rectified.stereo;
         return Ok(CameraFile { stereo, ..with_lens(raw, &model_of(&[object]), &coefficients, false)? });
     }
@@ -318,9 +319,10 @@ fn complete(camera: CameraFile, object: &Object, above: &[&Object], key: Option<
     let mut camera = camera.size(above.iter().rev().find_map(|object| size_of(object, centre)));
     let near: Vec<&Object> = above.iter().rev().copied().collect();
     if let Some(key) = key {
-        let coefficients =
-            lens_beside(object, key).or_else(|| near.get(1).and_then(|object| lens(object))).unwrap_or_default();
-        camera = with_lens(camera, &model_of(&near), &coefficients, false)?;
+        let model = model_of(&near);
+        let above = || near.get(1).and_then(|object| lens(object, &model));
+        let coefficients = lens_beside(object, key, &model).or_else(above).unwrap_or_default();
+        camera = with_lens(camera, &model, &coefficients, false)?;
     }
     binned(&mut camera, object);
     camera.unit_m = near.iter().find_map(|object| unit_m(object));
@@ -347,7 +349,7 @@ fn size_of(object: &Object, [cx, cy]: [f64; 2]) -> Option<(usize, usize)> {
 }
 
 /// The coefficients that belong to the matrix of a name: of several the ones whose name begins or ends as the matrix's.
-fn lens_beside(object: &Object, key: &str) -> Option<Vec<f64>> {
+fn lens_beside(object: &Object, key: &str, model: &str) -> Option<Vec<f64>> {
     let key = plain(key);
     let is_lens = |name: &str| {
         (name.contains("dist") && !name.contains("model")) || ["d", "d1", "d2", "dl", "dr"].contains(&name)
@@ -358,7 +360,7 @@ fn lens_beside(object: &Object, key: &str) -> Option<Vec<f64>> {
         .filter(|(name, numbers)| is_lens(name) && numbers.len() > 1)
         .collect();
     if all.len() < 2 {
-        return all.into_iter().next().map(|(_, numbers)| numbers).or_else(|| lens(object));
+        return all.into_iter().next().map(|(_, numbers)| numbers).or_else(|| lens(object, model));
     }
     let tail = |name: &str| name.chars().last().filter(|c| "12lrt".contains(*c));
     let same_end = all.iter().find(|(name, _)| tail(name).is_some() && tail(name) == tail(&key));
@@ -367,19 +369,19 @@ fn lens_beside(object: &Object, key: &str) -> Option<Vec<f64>> {
 }
 
 /// The coefficients of a lens in OpenCV's order.
-fn lens(object: &Object) -> Option<Vec<f64>> {
+fn lens(object: &Object, model: &str) -> Option<Vec<f64>> {
     if let Some(numbers) = LENS.iter().find_map(|name| numbers(get(object, &[name])?)) {
         return Some(numbers);
     }
     if let Some(Value::Object(inner)) = get(object, LENS) {
-        return lens(inner);
+        return lens(inner, model);
     }
     let names = ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"];
     let values = names.map(|name| number_of(object, &[name]));
     if values.iter().all(Option::is_none) {
         return None;
     }
-    if super::camera::model(&model_of(&[object])) == Some(depthplanes::DistortionModel::KannalaBrandt) {
+    if super::camera::model(model) == Some(depthplanes::DistortionModel::KannalaBrandt) {
         return Some([0, 1, 4, 5].map(|at| values[at].unwrap_or(0.0)).to_vec());
     }
     Some(values.map(|value| value.unwrap_or(0.0)).to_vec())
