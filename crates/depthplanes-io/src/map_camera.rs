@@ -132,8 +132,8 @@ fn scaled_to(camera: &Intrinsics, size: Option<Size>, map: Size) -> Result<(Intr
 fn scaled(camera: &Intrinsics, from: Size, to: Size) -> Option<Intrinsics> {
     let [from, to] = [from, to].map(|(width, height)| [width, height].map(|side| side.max(1) as f64));
     let scale = [to[0] / from[0], to[1] / from[1]];
-    let is_alike =
-        (from[1] * scale[0] - to[1]).abs() <= 1.0_f64.max(scale[0]) || (from[0] * scale[1] - to[0]).abs() <= 1.0;
+    let off = [(from[1] * scale[0] - to[1]).abs(), (from[0] * scale[1] - to[0]).abs()];
+    let is_alike = off[0].min(off[1]) <= scale[0].max(1.0) && (scale[0] / scale[1] - 1.0).abs() < 0.03;
     let centre = |c: f64, scale: f64| (c + 0.5) * scale - 0.5;
     is_alike.then(|| Intrinsics {
         fx: camera.fx * scale[0],
