@@ -264,6 +264,44 @@ fn every_form_gives_its_camera() {
     }
 }
 
+/// Whatever of a file is lost or changed, there is no panic and no camera with numbers that are none.
+#[test]
+fn files_that_were_cut_or_changed_give_a_finite_camera_or_none() {
+    let mut seed = 1u64;
+    let mut random = move |below: usize| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as usize % below
+    };
+    let looked_at = |text: &str| {
+        let Ok(camera) = parse(text) else { return };
+        for camera in camera.choices.iter().chain([&camera]) {
+            let own = camera.intrinsics;
+            assert!([own.fx, own.fy, own.cx, own.cy].iter().all(|x| x.is_finite()), "{text}");
+        }
+        for size in [(640, 480), (1, 1), (1280, 720)] {
+            for camera_size in [None, Some((1, 65_535))] {
+                let options = ReadOptions { camera_size, ..ReadOptions::default().camera(&camera) };
+                let _ = decode(&map(size.0.min(64), size.1.min(48)), "map", &options);
+            }
+        }
+    };
+    const PIECES: [&str; 16] =
+        ["[", "]", "{", "}", ":", ",", "-", "nan", "inf", "1e308", "0", "\n", " ", "\"", "é", "<a>"];
+    for (_, text, ..) in SPECIMENS {
+        let chars: Vec<char> = text.chars().collect();
+        for _ in 0..60 {
+            looked_at(&chars[..random(chars.len())].iter().collect::<String>());
+            let mut changed = chars.clone();
+            for _ in 0..1 + random(4) {
+                let at = random(changed.len());
+                let end = (at + random(6)).min(changed.len());
+                changed.splice(at..end, PIECES[random(PIECES.len())].chars());
+            }
+            looked_at(&changed.iter().collect::<String>());
+        }
+    }
+}
+
 #[test]
 fn the_small_files_after_reports_give_their_camera() {
     let Some(data) = common::data() else { return };
