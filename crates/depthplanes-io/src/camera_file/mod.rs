@@ -34,13 +34,6 @@ use form::{Document, form};
 /// All forms; those that are easily told apart come first.
 pub const FORMS: &[CameraForm] = &[
     form(
-        "numbers",
-        "`fx,fy,cx,cy`, or a 3 x 3, 3 x 4 or 4 x 4 matrix (ScanNet, ICL-NUIM, NumPy, Matlab); FoundationStereo's K.txt with the baseline in metres below; TUM's `fx fy cx cy` and coefficients",
-        "525,525,319.5,239.5",
-        text::recognise,
-        text::parse,
-    ),
-    form(
         "colmap",
         "COLMAP's cameras.txt; its pixel centres are at 0.5. The camera of the map's size, else the first",
         "1 PINHOLE 640 480 525 525 320 240",
@@ -74,6 +67,13 @@ pub const FORMS: &[CameraForm] = &[
         "extrinsic\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n\nintrinsic\n525 0 319.5\n0 525 239.5\n0 0 1\n\n425 2.5",
         mvsnet::recognise,
         mvsnet::parse,
+    ),
+    form(
+        "numbers",
+        "`fx,fy,cx,cy`, or a 3 x 3, 3 x 4 or 4 x 4 matrix (ScanNet, ICL-NUIM, NumPy, Matlab); FoundationStereo's K.txt with the baseline in metres below; TUM's `fx fy cx cy` and coefficients",
+        "525,525,319.5,239.5",
+        text::recognise,
+        text::parse,
     ),
     form(
         "zed",

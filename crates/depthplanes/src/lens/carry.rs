@@ -190,10 +190,16 @@ impl Carrier {
     }
 
     /// The records of the runs in the map's own units.
-    fn describe<T: Pixel>(&mut self, map: &DepthView<'_, T>, plain: &Sensor, valid_pixels: usize) {
+    fn describe<T: Pixel>(
+        &mut self,
+        map: &DepthView<'_, T>,
+        plain: &Sensor,
+        valid_pixels: usize,
+        planes: &mut Vec<Plane>,
+    ) {
         self.statistics.tally(map, &self.runs, 0, plain, 1);
         let seen = Seen { sensor: plain, noise: None, valid_pixels };
-        self.statistics.describe(map, &self.runs, &seen, 1, &mut self.planes);
+        self.statistics.describe(map, &self.runs, &seen, 1, planes);
     }
 
     fn carry<T: Pixel>(
@@ -222,11 +228,10 @@ impl Carrier {
             Curved { labels, regions }
         });
         self.carry_labels(map, rectifier, &found.labels, found.planes.len());
-        self.describe(map, plain, out.valid_pixels);
-        for (plane, &old) in self.planes.iter_mut().zip(&self.order) {
+        self.describe(map, plain, out.valid_pixels, &mut out.planes);
+        for (plane, &old) in out.planes.iter_mut().zip(&self.order) {
             plane.metric = found.planes[usize::from(old) - 1].metric;
         }
-        std::mem::swap(&mut out.planes, &mut self.planes);
         out.labels.clone_from(&self.labels);
         out.parts.clear();
     }
@@ -244,8 +249,9 @@ impl Carrier {
         let unions = std::mem::take(&mut self.names);
         let most = usize::from(pieces.iter().max().copied().unwrap_or(0));
         self.carry_labels(map, rectifier, pieces, most);
-        self.describe(map, plain, out.valid_pixels);
-        for (plane, &old) in self.planes.iter_mut().zip(&self.order) {
+        let mut planes = std::mem::take(&mut self.planes);
+        self.describe(map, plain, out.valid_pixels, &mut planes);
+        for (plane, &old) in planes.iter_mut().zip(&self.order) {
             let Some(part) = parts.iter().find(|part| part.plane.label == old) else { continue };
             let of = unions.get(usize::from(part.of) - 1).copied().unwrap_or(0);
             plane.metric = part.plane.metric;
@@ -254,6 +260,6 @@ impl Carrier {
             }
         }
         out.parts.sort_by_key(|part| (part.of, part.plane.label));
-        self.names = unions;
+        (self.names, self.planes) = (unions, planes);
     }
 }
