@@ -31,8 +31,11 @@ fn close(given: Intrinsics, right: [f64; 4]) -> bool {
 
 const VGA: [f64; 4] = [525.0, 526.0, 319.5, 239.5];
 
+/// The form, the text, the camera, and the size that it is for.
+type Specimen = (&'static str, &'static str, [f64; 4], Option<(usize, usize)>);
+
 /// Files of the camera [`VGA`], or of the one beside them, with their sizes.
-const SPECIMENS: &[(&str, &str, [f64; 4], Option<(usize, usize)>)] = &[
+const SPECIMENS: &[Specimen] = &[
     ("numbers", "525, 526, 319.5, 239.5\n", VGA, None),
     ("numbers", "525 526 319.5 239.5", VGA, None),
     ("numbers", "# fx fy cx cy\n525\n526\n319.5\n239.5\n", VGA, None),
