@@ -164,7 +164,7 @@ fn walk<'a>(
     path: &str,
     above: &mut Vec<&'a Object>,
     found: &mut Vec<Found>,
-    wrong: &mut Option<crate::Error>,
+    wrong: &mut Option<crate::error::Error>,
 ) {
     if found.len() > 10_000 {
         return;
@@ -472,7 +472,7 @@ fn one_of(mut found: Vec<Found>) -> Result<CameraFile> {
     Ok(camera.named(path).note(note))
 }
 
-fn several(found: &[Found], distinct: &[usize]) -> crate::Error {
+fn several(found: &[Found], distinct: &[usize]) -> crate::error::Error {
     let shown = |&at: &usize| {
         let Found { path, camera } = &found[at];
         let camera = camera.intrinsics;

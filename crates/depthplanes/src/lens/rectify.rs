@@ -98,7 +98,7 @@ fn sample<T: Pixel>(map: &DepthView<'_, T>, validity: &Validity<T>, is_depth: bo
         return T::ZERO;
     }
     let (left, top) = (u.floor(), v.floor());
-    if left < 0.0 || top < 0.0 || left as usize + 1 >= width || top as usize + 1 >= height {
+    if T::IS_INTEGER || left < 0.0 || top < 0.0 || left as usize + 1 >= width || top as usize + 1 >= height {
         return nearest;
     }
     let (column, row) = (left as usize, top as usize);
