@@ -11,6 +11,7 @@ use crate::detection::{Curved, CurvedRegion, Detection, Part, Plane};
 use crate::error::Result;
 use crate::limits::MAX_PLANES;
 use crate::map::{AnyView, DepthView, Pixel, with_view};
+use crate::noise::RoundingFinder;
 use crate::sensor::Sensor;
 use crate::statistics::{PlaneStatistics, Seen};
 use crate::util::memory::reserve_to;
@@ -19,6 +20,7 @@ use crate::util::memory::reserve_to;
 #[derive(Default)]
 pub(crate) struct Lens {
     rectifier: Option<Rectifier>,
+    finder: RoundingFinder,
     pictures: (Vec<u8>, Vec<u16>, Vec<f32>),
     found: Detection,
     carrier: Carrier,
@@ -85,16 +87,18 @@ impl Lens {
             rectifier: &Rectifier,
             map: &DepthView<'_, T>,
             sensor: &Sensor,
+            finder: &mut RoundingFinder,
             pixels: &'a mut Vec<T>,
         ) -> Result<AnyView<'a>> {
-            rectifier.resample(map, &sensor.measure, pixels);
+            rectifier.resample(map, &sensor.measure, finder, pixels);
             Ok(rectifier.view(map, pixels)?.into())
         }
+        let finder = &mut self.finder;
         let (of_u8, of_u16, of_f32) = &mut self.pictures;
         let view = match map {
-            AnyView::U8(map) => picture(rectifier, map, sensor, of_u8)?,
-            AnyView::U16(map) => picture(rectifier, map, sensor, of_u16)?,
-            AnyView::F32(map) => picture(rectifier, map, sensor, of_f32)?,
+            AnyView::U8(map) => picture(rectifier, map, sensor, finder, of_u8)?,
+            AnyView::U16(map) => picture(rectifier, map, sensor, finder, of_u16)?,
+            AnyView::F32(map) => picture(rectifier, map, sensor, finder, of_f32)?,
         };
         run(view, straight)
     }
