@@ -274,7 +274,7 @@ mod tests {
     #[test]
     fn values_between_pixels_of_a_plane_are_on_it() {
         let made = rectifier(BrownConrady, &[-0.2], 126.0);
-        let truth = |u: f64, v: f64| 1.0 / (0.25 + 0.001 * u - 0.0005 * v);
+        let truth = |u: f64, v: f64| 1.0 / (0.25 + 0.00107 * u - 0.00043 * v);
         let pixels: Vec<f32> = (0..160 * 120).map(|at| truth((at % 160) as f64, (at / 160) as f64) as f32).collect();
         let map = DepthView::new(&pixels, 160, 120).unwrap();
         let mut out = Vec::new();
