@@ -39,7 +39,11 @@ pub(crate) fn options(reading: &Reading) -> Outcome<ReadOptions> {
     }
     if let Some([fx, fy, cx, cy]) = reading.intrinsics {
         options.intrinsics = Some(Intrinsics::new(fx, fy, cx, cy)?);
-        options.camera_size = None;
+    }
+    options.camera_size = reading.camera_size;
+    options.rectified = reading.rectified;
+    if options.camera_size.is_some() && options.intrinsics.is_none() && options.camera_file.is_none() {
+        return Err(Failure::request("--camera-size needs the camera that it is of: --intrinsics or --camera"));
     }
     options.stereo = stereo(reading, &options)?;
     Ok(options)
@@ -53,9 +57,13 @@ fn stereo(reading: &Reading, options: &ReadOptions) -> Outcome<Option<Stereo>> {
         return Ok(options.stereo);
     }
     let lacking = |what| Failure::request(format!("a stereo rig needs its {what} as well"));
-    let known = options.stereo;
+    let file = options.camera_file.as_ref();
+    let known = file.and_then(|camera| camera.stereo);
     let baseline_m = reading.baseline.or(known.map(|rig| rig.baseline_m)).ok_or_else(|| lacking("--baseline"))?;
-    let focal = reading.focal.or(known.map(|rig| rig.focal_px)).or(options.intrinsics.map(|camera| camera.fx.abs()));
+    let focal = reading
+        .focal
+        .or(known.map(|rig| rig.focal_px))
+        .or(options.intrinsics.or(file.map(|camera| camera.intrinsics)).map(|camera| camera.fx.abs()));
     let focal_px = focal.ok_or_else(|| lacking("--focal (or --intrinsics)"))?;
     let doffs_px = reading.doffs.or(known.map(|rig| rig.doffs_px)).unwrap_or(0.0);
     Ok(Some(Stereo { focal_px, baseline_m, doffs_px }))

@@ -186,8 +186,8 @@ impl<'a> Runner<'a> {
         self.recipe.check_memory(frame)?;
         let view = frame.view()?;
         let detection = self.detector.detect(view)?.clone();
-        let camera = self.sensor.intrinsics;
-        let outline = |outliner: &mut Outliner| outliner.outline(&detection, camera.as_ref()).cloned();
+        let sensor = self.sensor;
+        let outline = |outliner: &mut Outliner| outliner.outline_seen_by(&detection, &sensor).cloned();
         let outlines = self.outliner.as_mut().map(outline).transpose()?;
         let times = (repeat > 0).then(|| self.measure(view, repeat)).transpose()?;
         Ok(Found { detection, outlines, times })
@@ -214,7 +214,7 @@ impl<'a> Runner<'a> {
             };
             let detection = self.detector.detect_observed(view, &mut observe)?;
             if let Some(outliner) = &mut self.outliner {
-                outliner.outline(detection, self.sensor.intrinsics.as_ref())?;
+                outliner.outline_seen_by(detection, &self.sensor)?;
                 observe(OUTLINE);
             }
             totals.push(milliseconds(start.elapsed()));

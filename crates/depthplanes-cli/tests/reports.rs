@@ -76,7 +76,13 @@ fn check(right: &Right) {
     let file = data.join("reports").join(right.file);
     let bench = Bench::new(&format!("reports_{}", right.file));
     let out = bench.run(&["detect", file.to_str().unwrap(), "--intrinsics", right.intrinsics, "--json"]).ok();
-    let record: Value = serde_json::from_str(&out).unwrap();
+    check_record(right, &out);
+}
+
+/// Holds a record of the program against what is right.
+#[track_caller]
+fn check_record(right: &Right, out: &str) {
+    let record: Value = serde_json::from_str(out).unwrap();
     let found: Vec<Plane> = record["planes"].as_array().unwrap().iter().map(plane_of).collect();
     let is_near = |&(distance, normal): &Plane, &(right_m, direction): &Plane| {
         let off = (0..3).map(|axis| (normal[axis] - direction[axis]).powi(2)).sum::<f64>().sqrt();
@@ -135,6 +141,35 @@ fn planes_are_found_in_half_precision() {
 #[test]
 fn a_room_is_found_in_a_map_that_was_enlarged_by_repeating_pixels() {
     check(&NEAREST);
+}
+
+#[test]
+fn a_camera_of_another_size_is_refused_with_the_one_to_type() {
+    let Some(data) = support::data() else { return };
+    let [map, camera] =
+        ["other_size_256x192.png", "other_size_1920x1440.csv"].map(|name| data.join("reports").join(name));
+    let [map, camera] = [map.to_str().unwrap(), camera.to_str().unwrap()];
+    let bench = Bench::new("reports_other_size");
+    let refused = bench.run(&["detect", map, "--camera", camera]);
+    assert!(refused.err.contains("--intrinsics=212,212,127.5,95.5"), "{}", refused.err);
+    let right = Right { file: "other_size_256x192.png", intrinsics: "212,212,127.5,95.5", ..GAPS[0] };
+    check(&right);
+    let scaled = bench.run(&["detect", map, "--camera", camera, "--camera-size", "1920x1440", "--json"]).ok();
+    check_record(&right, &scaled);
+}
+
+#[test]
+fn planes_behind_a_lens_are_found_with_the_camera_file_that_states_it() {
+    let Some(data) = support::data() else { return };
+    let [map, camera] = ["distorted_k1.png", "distorted_k1.yaml"].map(|name| data.join("reports").join(name));
+    let words = ["detect", map.to_str().unwrap(), "--camera", camera.to_str().unwrap(), "--json"];
+    let bench = Bench::new("reports_distorted");
+    let ran = bench.run(&words);
+    assert!(ran.err.contains("--rectified"), "{}", ran.err);
+    let planes: &[Plane] = &[(4.0, WALL), FLOOR, SIDE];
+    check_record(&Right { file: "distorted_k1.png", planes, share: 0.9, ..GAPS[0] }, &ran.ok());
+    let flat = bench.run(&[&words[..], &["--rectified"]].concat());
+    assert!(!flat.err.contains("--rectified"), "{}", flat.err);
 }
 
 /// The maps of a folder and of those in it.

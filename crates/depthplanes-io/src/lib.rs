@@ -14,6 +14,7 @@ pub mod formats;
 mod frame;
 pub mod inspect;
 pub mod labels;
+mod map_camera;
 pub mod memory;
 pub mod noise_table;
 pub mod outputs;

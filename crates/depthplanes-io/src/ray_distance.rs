@@ -3,7 +3,7 @@
 //! Simulators, laser scanners and some time-of-flight drivers deliver how far a point is from the camera, r. Its depth is
 //! `z = r / sqrt(x^2 + y^2 + 1)` for the ray (x, y, 1) of the pixel.
 
-use depthplanes::{Intrinsics, Measure};
+use depthplanes::{Measure, Sensor};
 
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Pixels};
@@ -17,12 +17,13 @@ pub(crate) fn to_depth(frame: &mut Frame) -> Result<()> {
     let Measure::Depth { .. } = frame.sensor.measure else {
         return refused("for disparity", "a map of distances; --encoding states its unit");
     };
-    let Some(camera) = frame.sensor.intrinsics else {
+    if frame.sensor.intrinsics.is_none() {
         return refused(
             "without a camera",
             "a camera as well: --intrinsics fx,fy,cx,cy, --camera FILE or a --preset that has one",
         );
-    };
+    }
+    let sensor = frame.sensor;
     let valid = |value: f64| {
         value != 0.0
             && frame.missing != Some(value)
@@ -36,14 +37,17 @@ pub(crate) fn to_depth(frame: &mut Frame) -> Result<()> {
     for (at, value) in depths.iter_mut().enumerate() {
         let distance = f64::from(*value);
         let pixel = [at % frame.width, at / frame.width];
-        *value = if valid(distance) { (distance / ray_length(&camera, pixel)) as f32 } else { f32::NAN };
+        *value = match ray_length(&sensor, pixel) {
+            Some(length) if valid(distance) => (distance / length) as f32,
+            _ => f32::NAN,
+        };
     }
     frame.pixels = Pixels::F32(depths);
     (frame.missing, frame.valid_range) = (None, Some((0.0, f64::from(f32::MAX))));
     Ok(())
 }
 
-/// Length of a pixel's ray up to depth 1.
-pub(crate) fn ray_length(camera: &Intrinsics, [u, v]: [usize; 2]) -> f64 {
-    camera.ray(u as f64, v as f64).iter().map(|x| x * x).sum::<f64>().sqrt()
+/// Length of a pixel's ray up to depth 1; `None` where the lens has none.
+fn ray_length(sensor: &Sensor, [u, v]: [usize; 2]) -> Option<f64> {
+    Some(sensor.ray(u as f64, v as f64)?.iter().map(|x| x * x).sum::<f64>().sqrt())
 }

@@ -15,6 +15,7 @@ use crate::error::{Error, Result};
 use crate::file_bytes::{self, read_known};
 use crate::formats::{self, DecodeOptions, Image};
 use crate::frame::{Frame, Pixels, Provenance, Source};
+use crate::map_camera::{MapCamera, Stated, map_camera};
 use crate::presets::{self, PresetNoise, SensorPreset};
 use crate::ray_distance;
 use crate::traps::missing::not_measured;
@@ -54,9 +55,14 @@ pub struct ReadOptions {
     pub valid_range: Option<(f64, f64)>,
     /// The camera.
     pub intrinsics: Option<Intrinsics>,
-    /// Columns and rows that the intrinsics are for, if known; maps of another size are refused.
+    /// What a camera file states; not used if there are `intrinsics`.
+    pub camera_file: Option<CameraFile>,
+    /// Columns and rows that the intrinsics or the camera file are for: they are scaled to the map. Without it they are
+    /// for the map's size, or for the one that the file states, and maps of another size are refused.
     pub camera_size: Option<(usize, usize)>,
-    /// The stereo rig, for disparities; ignored for depth.
+    /// Whether the map is of the rectified picture, so that lens distortion is ignored; by default as the camera file suggests.
+    pub rectified: Option<bool>,
+    /// The stereo rig, for disparities; ignored for depth. It makes a map without a stated encoding one of disparities.
     pub stereo: Option<Stereo>,
     /// How far off a pixel is by itself ([`Sensor::noise`]).
     pub noise: Option<SensorNoise>,
@@ -67,9 +73,7 @@ pub struct ReadOptions {
 impl ReadOptions {
     /// The same with everything that a camera file states.
     pub fn camera(mut self, camera: &CameraFile) -> Self {
-        self.intrinsics = Some(camera.intrinsics);
-        self.camera_size = camera.size;
-        self.stereo = camera.stereo.or(self.stereo);
+        (self.intrinsics, self.camera_file) = (None, Some(camera.clone()));
         self
     }
 }
@@ -113,16 +117,20 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
     if options.swap_bytes {
         swap_bytes(&mut image)?;
     }
-    let disparity = options.disparity || options.stereo.is_some();
+    let of_disparity = options.camera_file.as_ref().is_some_and(|camera| camera.disparity);
+    let disparity = options.disparity || options.stereo.is_some() || of_disparity;
     let Choice { encoding, why, note } = choose(&image, format.name, by_user, disparity, preset)?;
     image.warnings.extend(note);
     if options.disparity && !encoding.disparity {
         let accepted = "an encoding of disparity (disparity, kitti, middlebury), or leave --disparity out";
         return Err(Error::parameter("--encoding", encoding.name, accepted));
     }
-    let scale = scale(options, encoding)?;
-    let meaning = (encoding.apply)(&mut image, &Given { scale, stereo: options.stereo })?;
-    let intrinsics = camera(options, preset, &mut image)?;
+    let camera = camera(options, preset, &mut image)?;
+    let is_stated = why == "stated" || why == "preset";
+    let scale =
+        scale(options, encoding)?.or_else(|| scale_of_camera_file(&camera, encoding.name, is_stated, &mut image));
+    let stereo = options.stereo.or(camera.stereo);
+    let meaning = (encoding.apply)(&mut image, &Given { scale, stereo })?;
     let of_preset = |part: fn(&SensorPreset) -> Option<PresetNoise>| part(preset?)?.of();
     let of_preset_or_file = preset.and_then(|preset| preset.missing).or(image.missing);
     let missing = missing(options, &image)?.or(of_preset_or_file).or(encoding.missing);
@@ -139,7 +147,8 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
         valid_range: options.valid_range.or(meaning.valid_range),
         sensor: Sensor::default()
             .measure(meaning.measure)
-            .intrinsics(intrinsics)
+            .intrinsics(camera.intrinsics)
+            .distortion(camera.distortion)
             .noise(noise(options.noise, of_preset(|preset| preset.noise), &meaning)?)
             .smooth_noise(noise(options.smooth_noise, of_preset(|preset| preset.smooth_noise), &meaning)?),
         format: format.name,
@@ -148,7 +157,7 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
             encoding: why,
             preset: preset.map(|preset| preset.name),
             scale,
-            stereo: options.stereo.filter(|_| encoding.disparity),
+            stereo: stereo.filter(|_| encoding.disparity),
             noise: source(options.noise, preset.and_then(|preset| preset.noise)),
             smooth_noise: source(options.smooth_noise, preset.and_then(|preset| preset.smooth_noise)),
             ray_distance: options.ray_distance,
@@ -223,24 +232,28 @@ fn noise(given: Option<SensorNoise>, of_preset: Option<SensorNoise>, meaning: &M
     Ok(Some(noise))
 }
 
-/// The camera for this map: the user's, or the preset's if the size is right.
-fn camera(options: &ReadOptions, preset: Option<&SensorPreset>, image: &mut Image) -> Result<Option<Intrinsics>> {
-    let size = (image.width, image.height);
-    if let Some(given) = options.intrinsics {
-        if let Some((width, height)) = options.camera_size.filter(|stated| *stated != size) {
-            let accepted = format!("the camera of this map, which has {} x {} pixels", size.0, size.1);
-            return Err(Error::parameter("camera", format_args!("for {width} x {height} pixels"), accepted));
-        }
-        let Intrinsics { fx, fy, cx, cy } = given;
-        return Ok(Some(Intrinsics::new(fx, fy, cx, cy)?));
+/// The camera for this map; what is to be said of it goes to the image's warnings.
+fn camera(options: &ReadOptions, preset: Option<&SensorPreset>, image: &mut Image) -> Result<MapCamera> {
+    let stated = Stated {
+        intrinsics: options.intrinsics,
+        file: options.camera_file.as_ref(),
+        size: options.camera_size,
+        rectified: options.rectified,
+        preset,
+    };
+    let mut camera = map_camera(&stated, (image.width, image.height))?;
+    image.warnings.append(&mut camera.notes);
+    Ok(camera)
+}
+
+/// Map units in a metre, as the camera file states them, where the encoding is a guess.
+fn scale_of_camera_file(camera: &MapCamera, encoding: &str, is_stated: bool, image: &mut Image) -> Option<f64> {
+    let units = camera.unit_m.map(f64::recip).filter(|units| units.is_finite() && (units - 1000.0).abs() > 1e-6)?;
+    if is_stated || encoding != "millimetre" || !matches!(image.pixels, Pixels::U16(_)) {
+        return None;
     }
-    match preset.and_then(|preset| preset.camera) {
-        Some((width, height, intrinsics)) if (width, height) == size => Ok(Some(intrinsics)),
-        Some((width, height, _)) => {
-            let (w, h) = size;
-            image.warnings.push(format!("the preset's camera is for {width} x {height}, not {w} x {h}: not used"));
-            Ok(None)
-        }
-        None => Ok(None),
-    }
+    image
+        .warnings
+        .push(format!("{units} map units are a metre, as the camera file states; --scale 1000 for millimetres"));
+    Some(units)
 }

@@ -77,7 +77,9 @@ fn a_stated_noise_goes_before_the_presets_and_must_suit_the_map() {
 fn every_presets_noise_suits_its_encoding() {
     let camera = Intrinsics::new(425.0, 425.0, 424.0, 240.0).unwrap();
     for preset in SENSOR_PRESETS {
-        let options = ReadOptions { preset: Some(preset.name.into()), intrinsics: Some(camera), ..Default::default() };
+        let camera_size = Some((2, 1)); // a part of the picture
+        let preset_name = Some(preset.name.into());
+        let options = ReadOptions { preset: preset_name, intrinsics: Some(camera), camera_size, ..Default::default() };
         let sensor = decode(MAP, preset.name, &options).unwrap().sensor;
         assert_eq!(sensor.noise.is_some(), preset.noise.is_some(), "{}", preset.name);
         assert_eq!(sensor.smooth_noise.is_some(), preset.smooth_noise.is_some(), "{}", preset.name);

@@ -92,6 +92,8 @@ proptest! {
     fn camera_files_of_any_text(words in prop::collection::vec(prop_oneof![
         Just("K:"), Just("P:"), Just("camera_matrix:"), Just("data:"), Just("["), Just("]"), Just("\n"), Just("- "), Just("1e308"),
         Just("0"), Just("500"), Just(","), Just("nan"), Just("cam0=["), Just(";"), Just("{\"fx\":"), Just("}"), Just("-1"), Just("#"),
+        Just("<a>"), Just("</a>"), Just("[LEFT_CAM_HD]\n"), Just("fx="), Just("fy: "), Just("1 OPENCV 640 480 "), Just(" "), Just("P_rect_02: "),
+        Just("\"cameraData\": [[0, {"), Just("Camera.fx: 1\n"), Just("ppx,3\n"), Just("intrinsic\n"), Just("extrinsic\n"), Just("'"), Just("!!"),
     ], 0..40)) {
         let _ = camera_file::parse(&words.concat());
     }

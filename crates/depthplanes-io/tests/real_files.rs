@@ -149,8 +149,9 @@ fn camera_files_of_the_data_sets() {
     assert_eq!((icl.intrinsics.fx, icl.intrinsics.fy, icl.intrinsics.cx), (481.2, -480.0, 319.5));
     let open3d = read_camera(data.join("realsense_polylidar/camera_intrinsic_rgb_424.json")).unwrap();
     assert_eq!((open3d.size, open3d.intrinsics.cy), (Some((424, 240)), 121.65782165527344));
-    let colour = data.join("azure_kinect/calibration.json");
-    assert!(read_camera(colour).is_err());
+    let azure = read_camera(data.join("azure_kinect/calibration.json")).unwrap();
+    assert!((azure.intrinsics.fx - 504.6076).abs() < 1e-3 && azure.distortion.is_some());
+    assert_eq!(azure.choices.len(), 10); // four modes of depth, six of colour
 }
 
 #[test]

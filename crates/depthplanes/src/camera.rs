@@ -226,7 +226,12 @@ impl Hessian {
     /// or behind infinity.
     #[inline]
     pub fn point_at(&self, [u, v]: [f64; 2], camera: &Intrinsics) -> Option<[f64; 3]> {
-        let ray = camera.ray(u, v);
+        self.point_along(camera.ray(u, v))
+    }
+
+    /// The plane's point on a ray, metres; `None` if the ray meets the plane at or behind infinity.
+    #[inline]
+    pub(crate) fn point_along(&self, ray: [f64; 3]) -> Option<[f64; 3]> {
         let [x, y, z] = self.normal;
         let depth = -self.distance / (x * ray[0] + y * ray[1] + z * ray[2]);
         (depth > 0.0 && depth.is_finite()).then(|| ray.map(|r| r * depth))

@@ -103,6 +103,8 @@ pub(crate) struct Joiner {
     members: Vec<Member>,
     order: Vec<usize>,
     labels: Vec<u16>,
+    /// The pixels of the planes as they were, where somebody will ask for them.
+    pieces: Option<Vec<LabelledRun>>,
 }
 
 /// Planes that are one. The first is the largest.
@@ -128,7 +130,14 @@ impl Joiner {
     /// As [`Coplanar::new`].
     pub fn new(coplanar: Coplanar) -> Result<Self> {
         let limits = Coplanar::new(coplanar.angle_deg, coplanar.distance_m)?.limits();
-        Ok(Joiner { limits, unions: Vec::new(), members: Vec::new(), order: Vec::new(), labels: Vec::new() })
+        Ok(Joiner {
+            limits,
+            unions: Vec::new(),
+            members: Vec::new(),
+            order: Vec::new(),
+            labels: Vec::new(),
+            pieces: None,
+        })
     }
 
     /// Finds which planes are one; returns whether any are. `planes` are those of the labels 1, 2, .. in `runs`, by
@@ -142,7 +151,26 @@ impl Joiner {
             }
         }
         self.number(runs);
+        if let Some(pieces) = &mut self.pieces {
+            pieces.clear();
+            pieces.extend_from_slice(runs);
+        }
         self.unions.len() < planes.len()
+    }
+
+    /// Keeps the pixels of the planes for [`Joiner::paint_pieces`].
+    pub fn keep_pieces(&mut self) {
+        self.pieces.get_or_insert_default();
+    }
+
+    /// The label image before joining.
+    pub fn paint_pieces(&self, pixels: usize, width: usize, image: &mut Vec<u16>) {
+        image.clear();
+        image.resize(pixels, 0);
+        for run in self.pieces.iter().flatten() {
+            let row = run.v as usize * width;
+            image[row + run.u_first as usize..=row + run.u_last as usize].fill(run.label);
+        }
     }
 
     /// For each label from 1 the one after joining: by decreasing pixel count of the unions, equal counts by first pixel

@@ -3,7 +3,8 @@
 use crate::coplanar::{Coplanar, Joiner};
 use crate::detection::Detection;
 use crate::error::{Error, Result};
-use crate::explanation::Explanation;
+use crate::explanation::{Explanation, Verdict};
+use crate::lens::Lens;
 use crate::map::AnyView;
 use crate::methods::method::{Configured, Job, MethodInfo, Parameters, names};
 use crate::methods::{self, METHODS};
@@ -49,6 +50,7 @@ pub struct Detector {
     curved: bool,
     joiner: Option<Joiner>,
     detection: Detection,
+    lens: Lens,
 }
 
 impl std::fmt::Debug for Detector {
@@ -97,10 +99,16 @@ impl Detector {
             curved: false,
             joiner: None,
             detection: Detection::default(),
+            lens: Lens::default(),
         }
     }
 
     /// States what the map's numbers mean and which camera saw them; needed for metric planes.
+    ///
+    /// Behind a lens that distorts ([`Sensor::distortion`]) planes are found in the picture that a pinhole camera in its place
+    /// would have made. Labels, pixel counts, boxes, centroids, shares and [`crate::Plane::fit`] are of the pixels of the map that is
+    /// given; what is in metres is of the pinhole picture, and so are parameters in pixels. Pixels further than 75
+    /// degrees from the axis get no label.
     #[must_use]
     pub fn sensor(mut self, sensor: Sensor) -> Self {
         self.sensor = sensor;
@@ -164,12 +172,24 @@ impl Detector {
             self.sensor.check_metric("merge-coplanar")?;
         }
         self.detection.parts.clear();
-        let joiner = self.joiner.as_mut();
-        let mut job = Job { sensor: self.sensor, threads: self.threads, curved: self.curved, joiner, observer };
-        let (map, method, detection) = (map.into(), &mut self.method, &mut self.detection);
-        install(self.threads, || method.0.run(map, &mut job, detection))
-            .map_err(|error| named(error, method.info()))?;
-        Ok(&self.detection)
+        let Detector { method, sensor, threads, curved, joiner, detection, lens } = self;
+        let (map, info, threads, curved) = (map.into(), method.info(), *threads, *curved);
+        let mut joiner = joiner.as_mut();
+        if !Lens::is_needed(sensor) {
+            let mut job = Job { sensor: *sensor, threads, curved, joiner, observer };
+            install(threads, || method.0.run(map, &mut job, detection)).map_err(|error| named(error, info))?;
+            return Ok(detection);
+        }
+        if let Some(joiner) = &mut joiner {
+            joiner.keep_pieces();
+        }
+        let run = |picture: AnyView<'_>, sensor, joiner: Option<&mut Joiner>, found: &mut Detection| {
+            let mut job = Job { sensor, threads, curved, joiner, observer };
+            method.0.run(picture, &mut job, found)
+        };
+        install(threads, || lens.through(&map, sensor, joiner, run, detection)).map_err(|error| named(error, info))?;
+        observer("label"); // once more: labels are carried back
+        Ok(detection)
     }
 
     /// Says why the pixel in column `at[0]`, row `at[1]` belongs to a plane or to none: what each stage saw there,
@@ -195,9 +215,45 @@ impl Detector {
             return Err(Error::Pixel { at, width, height });
         }
         self.sensor.check()?;
+        if Lens::is_needed(&self.sensor) {
+            return self.explain_through_lens(&map, at).map_err(|error| named(error, self.method.info()));
+        }
         let mut job =
             Job { sensor: self.sensor, threads: self.threads, curved: false, joiner: None, observer: &mut |_| () };
         self.method.0.explain(map, &mut job, at).map_err(|error| named(error, self.method.info()))
+    }
+
+    /// The explanation of the pinhole picture's pixel, with the labels that the map's own pixels have.
+    fn explain_through_lens(&mut self, map: &AnyView<'_>, at: [usize; 2]) -> Result<Explanation> {
+        let Detector { method, sensor, threads, lens, .. } = self;
+        let method_name = method.info().name;
+        let mut out = Detection::default();
+        let run = |picture: AnyView<'_>, sensor, joiner: Option<&mut Joiner>, found: &mut Detection| {
+            let mut job = Job { sensor, threads: *threads, curved: false, joiner, observer: &mut |_| () };
+            method.0.run(picture, &mut job, found)
+        };
+        lens.through(map, sensor, None, run, &mut out)?;
+        let explained = lens.explain(map, sensor, at, |picture, sensor, there| {
+            let mut job = Job { sensor, threads: *threads, curved: false, joiner: None, observer: &mut |_| () };
+            method.0.explain(picture, &mut job, there)
+        })?;
+        let Some(mut explanation) = explained else {
+            let verdict = Verdict::NotMeasured;
+            return Ok(Explanation { at, method: method_name, findings: Vec::new(), verdict, suggestions: Vec::new() });
+        };
+        explanation.at = at;
+        let rename = |label: u16| lens.names().get(usize::from(label).wrapping_sub(1)).copied().unwrap_or(0);
+        let own = out.labels[at[1] * out.width + at[0]];
+        match &mut explanation.verdict {
+            Verdict::Plane { label, pixels, .. } if own > 0 => {
+                (*label, *pixels) = (own, out.planes[usize::from(own) - 1].pixel_count);
+            }
+            Verdict::Plane { label, .. } | Verdict::Off { label, .. } | Verdict::Unexplained { label } => {
+                *label = rename(*label)
+            }
+            _ => (),
+        }
+        Ok(explanation)
     }
 }
 

@@ -6,6 +6,7 @@
 use crate::components::selection::LabelledRun;
 use crate::detection::Detection;
 use crate::error::{Error, Result};
+use crate::lens::Lens;
 use crate::map::{AnyView, DepthView, Pixel, with_view};
 use crate::noise::stated_noise;
 use crate::sensor::Sensor;
@@ -39,7 +40,29 @@ pub fn describe_labels<'m>(
         return Err(Error::Labels { given: labels.len(), pixels });
     }
     sensor.check()?;
+    if Lens::is_needed(sensor) {
+        return through_lens(&map, labels, sensor);
+    }
     Ok(with_view!(map, map => described(&map, labels.to_vec(), sensor)))
+}
+
+/// Pixels as they are in the map, metres by its pinhole picture.
+fn through_lens(map: &AnyView<'_>, labels: &[u16], sensor: &Sensor) -> Result<(Detection, Vec<u16>)> {
+    let plain = Sensor { intrinsics: None, distortion: None, ..*sensor };
+    let (mut found, names) = with_view!(map, map => described(map, labels.to_vec(), &plain));
+    let mut lens = Lens::default();
+    let straight = lens.labels_of_picture(map, sensor, &found.labels)?;
+    let describe =
+        |picture: AnyView<'_>, sensor: Sensor, _: Option<&mut crate::coplanar::Joiner>, out: &mut Detection| {
+            let (described, names) = with_view!(picture, picture => described(&picture, straight, &sensor));
+            for (plane, &name) in described.planes.iter().zip(&names) {
+                found.planes[usize::from(name) - 1].metric = plane.metric;
+            }
+            *out = described;
+            Ok(())
+        };
+    lens.through(map, sensor, None, describe, &mut Detection::default())?;
+    Ok((found, names))
 }
 
 fn described<T: Pixel>(map: &DepthView<'_, T>, mut labels: Vec<u16>, sensor: &Sensor) -> (Detection, Vec<u16>) {

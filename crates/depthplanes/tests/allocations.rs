@@ -8,7 +8,9 @@ use depthplanes::methods::Parameters;
 use depthplanes::noise::{EnlargementFinder, RoundingFinder, Space};
 use depthplanes::outline::Outliner;
 use depthplanes::scene::{ScenePixels, Spec};
-use depthplanes::{Coplanar, DepthView, Detector, Intrinsics, Measure, Ngaf, Pixel, Planar, Sensor};
+use depthplanes::{
+    Coplanar, DepthView, Detector, Distortion, DistortionModel, Intrinsics, Measure, Ngaf, Pixel, Planar, Sensor,
+};
 use naive::Random;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -119,6 +121,17 @@ fn the_counter_counts() {
     assert_eq!((calls, bytes), (1, 1000));
     let (calls, _) = allocated(|| drop(std::hint::black_box(Box::new(1u64))));
     assert_eq!(calls, 1);
+}
+
+#[test]
+fn later_frames_behind_a_lens_allocate_nothing() {
+    let lens = Distortion::new(DistortionModel::BrownConrady, &[-0.2, 0.05]).unwrap();
+    let [_, depth, stereo] = sensors().map(|sensor| sensor.distortion(lens));
+    for sensor in [depth, stereo] {
+        check::<u16, _>(Ngaf::default().theta(3.0).min(2), sensor, (120, 90), 2);
+        check::<f32, _>(Ngaf::default().theta(3.0).min(2), sensor, (97, 33), 1);
+        check::<u16, _>(Planar::default().min(20), sensor, (160, 120), 2);
+    }
 }
 
 #[test]

@@ -34,6 +34,8 @@ pub(crate) struct Reading {
     pub(crate) ray_distance: bool,
     pub(crate) intrinsics: Option<[f64; 4]>,
     pub(crate) camera: Option<PathBuf>,
+    pub(crate) camera_size: Option<(usize, usize)>,
+    pub(crate) rectified: Option<bool>,
     pub(crate) disparity: bool,
     pub(crate) swap_bytes: bool,
     pub(crate) baseline: Option<f64>,
@@ -76,6 +78,8 @@ impl Reading {
             ray_distance: matches.get_flag("ray-distance"),
             intrinsics: matches.get_one("intrinsics").copied(),
             camera: matches.get_one("camera").cloned(),
+            camera_size: matches.get_one("camera-size").copied(),
+            rectified: matches.get_one("rectified").copied(),
             disparity: matches.get_flag("disparity"),
             swap_bytes: matches.get_flag("swap-bytes"),
             baseline: number("baseline"),
@@ -126,7 +130,7 @@ pub(super) fn reading() -> Vec<Arg> {
         listed(Arg::new("preset").value_parser(presets).value_name("SENSOR"))
             .help("A known sensor: its encoding, nominal camera and noise"),
         numbers::<4>("intrinsics", "FX,FY,CX,CY").help("The camera: focal lengths and principal point, pixels"),
-        path("camera", "FILE").help("Camera file: ROS, Open3D, BOP, KITTI, Middlebury and others"),
+        path("camera", "FILE").help("Camera file: ROS, OpenCV, RealSense, COLMAP, KITTI and many more"),
         listed(Arg::new("encoding").value_parser(PossibleValuesParser::new(encodings)).value_name("NAME"))
             .help("What the numbers mean; `depthplanes encodings` lists the names"),
         number("scale", "UNITS_PER_METRE")
@@ -134,6 +138,17 @@ pub(super) fn reading() -> Vec<Arg> {
             .long_help("Map units in a metre, or what `depthplanes encodings` states as the encoding's scale"),
         number("depth-scale", "METRES").help("Metres in a map unit, instead of --scale: RealSense's depth scale"),
         switch("ray-distance", "The values are distances along the rays; they are turned into depth"),
+        Arg::new("camera-size")
+            .value_name("WxH")
+            .value_parser(size)
+            .help("Size of the picture that --intrinsics or --camera are for; they are scaled to the map"),
+        Arg::new("rectified")
+            .value_name("yes|no")
+            .num_args(0..=1)
+            .require_equals(true)
+            .default_missing_value("yes")
+            .value_parser(yes_or_no)
+            .help("The map is of the rectified picture: lens distortion is ignored; --rectified=no: it is undone"),
         number("missing", "VALUE").help("A value that means `missing`, beside 0, NaN and the infinities"),
         numbers::<2>("valid-range", "LO,HI").help("Only values within this range, in map units, are valid"),
         switch("disparity", "The numbers are disparities; with --focal and --baseline they become metric"),
@@ -311,6 +326,14 @@ pub(super) fn numbers<const N: usize>(id: &'static str, value: &'static str) -> 
 
 fn parse_number(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| format!("`{text}` is not a number; accepted: numbers such as 2, 0.5 or 1e-3"))
+}
+
+fn yes_or_no(text: &str) -> Result<bool, String> {
+    match text {
+        "yes" => Ok(true),
+        "no" => Ok(false),
+        _ => Err("accepted: --rectified, --rectified=yes or --rectified=no".to_string()),
+    }
 }
 
 fn size(text: &str) -> Result<(usize, usize), String> {

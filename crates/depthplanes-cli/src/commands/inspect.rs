@@ -71,6 +71,11 @@ fn readable(name: &str, frame: &Frame, seen: &Summary, reading: &Reading) -> Str
     line("encoding", encoding(seen));
     if let Some(camera) = frame.sensor.intrinsics {
         line("camera", format!("fx {}, fy {}, cx {}, cy {}", camera.fx, camera.fy, camera.cx, camera.cy));
+        if let Some(lens) = frame.sensor.distortion {
+            let coefficients: Vec<String> = lens.coefficients().iter().map(f64::to_string).collect();
+            let given = coefficients.iter().rposition(|k| k != "0").map_or(0, |last| last + 1);
+            line("lens", format!("{} {}", lens.model().name(), coefficients[..given].join(" ")));
+        }
     }
     line("missing", format!("{:.1} % of the pixels", 100.0 * seen.missing));
     match seen.range {

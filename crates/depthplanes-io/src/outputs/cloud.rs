@@ -37,7 +37,8 @@ fn ply(report: &Report<'_>) -> Result<Vec<u8>, OutputError> {
 const POINT_BYTES: usize = 3 * 4 + 3 + 2;
 
 fn points(report: &Report<'_>) -> Result<Vec<u8>, OutputError> {
-    let (camera, measure) = (report.metric_camera()?, report.frame.sensor.measure);
+    let sensor = report.metric_sensor()?;
+    let measure = sensor.measure;
     let greys = shade::greys(report.frame.view()?, report.frame.sensor.measure);
     let labels = &report.detection.labels;
     let palette = palette(report.detection.planes.len());
@@ -45,7 +46,7 @@ fn points(report: &Report<'_>) -> Result<Vec<u8>, OutputError> {
     let mut bytes = Vec::with_capacity(labels.len() * POINT_BYTES);
     let mut add = |at: usize, value: f64| {
         let Some(z) = measure.depth_m(value) else { return };
-        let ray = camera.ray((at % width) as f64, (at / width) as f64);
+        let Some(ray) = sensor.ray((at % width) as f64, (at / width) as f64) else { return };
         let point = ray.map(|r| (r * z) as f32);
         if !point.iter().all(|x| x.is_finite()) {
             return; // beyond single precision

@@ -20,10 +20,10 @@ pub(super) const OUTPUT: Output = Output {
 };
 
 fn ply(report: &Report<'_>) -> Result<Vec<u8>, OutputError> {
-    let camera = report.metric_camera()?;
+    let sensor = report.metric_sensor()?;
     Ok(match report.outlines {
         Some(outlines) => mesh_ply(outlines),
-        None => mesh_ply(Outliner::default().outline(report.detection, Some(&camera))?),
+        None => mesh_ply(Outliner::default().outline_seen_by(report.detection, &sensor)?),
     })
 }
 

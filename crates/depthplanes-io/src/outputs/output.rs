@@ -8,7 +8,7 @@ use super::times::Times;
 use crate::frame::Frame;
 use depthplanes::methods::MethodInfo;
 use depthplanes::outline::Outlines;
-use depthplanes::{Coplanar, Detection, Intrinsics, Measure};
+use depthplanes::{Coplanar, Detection, Measure, Sensor};
 use std::path::Path;
 
 /// One row of [`OUTPUTS`](super::OUTPUTS).
@@ -94,20 +94,20 @@ impl Report<'_> {
 
     /// Whether points and planes can be given in metres: the measure is metric and the camera known.
     pub fn is_metric(&self) -> bool {
-        self.metric_camera().is_ok()
+        self.metric_sensor().is_ok()
     }
 
-    /// The camera, for outputs in metres.
+    /// The sensor, for outputs in metres.
     ///
     /// # Errors
     /// [`OutputError::NeedsCamera`] unless the measure is metric and the camera known.
-    pub(super) fn metric_camera(&self) -> Result<Intrinsics, OutputError> {
+    pub(super) fn metric_sensor(&self) -> Result<Sensor, OutputError> {
         let sensor = self.frame.sensor;
         if sensor.measure == Measure::Disparity {
             let missing = "to know what the disparities mean: give --focal and --baseline of the rig";
             return Err(OutputError::NeedsCamera { missing });
         }
-        sensor.intrinsics.ok_or(OutputError::NeedsCamera {
+        sensor.intrinsics.map(|_| sensor).ok_or(OutputError::NeedsCamera {
             missing: "the camera's intrinsics: give --intrinsics fx,fy,cx,cy, --camera FILE or --preset SENSOR",
         })
     }

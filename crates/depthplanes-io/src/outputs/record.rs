@@ -6,7 +6,7 @@ use super::output::Report;
 use super::times::{Spread, Times};
 use depthplanes::detection::{CurvedRegion, PixelBox};
 use depthplanes::methods::ParamKind;
-use depthplanes::{Coplanar, Intrinsics, Measure, Plane};
+use depthplanes::{Coplanar, Distortion, Intrinsics, Measure, Plane};
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
@@ -29,6 +29,8 @@ pub(super) struct FrameRecord<'a> {
     height: usize,
     measure: MeasureRecord,
     intrinsics: Option<IntrinsicsRecord>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    distortion: Option<DistortionRecord>,
     method: &'static str,
     parameters: Map<String, Value>,
     noise: Option<NoiseRecord>,
@@ -111,6 +113,12 @@ struct FitRecord {
 }
 
 #[derive(Serialize)]
+struct DistortionRecord {
+    model: &'static str,
+    coefficients: Vec<f64>,
+}
+
+#[derive(Serialize)]
 struct MetricRecord {
     normal: [f64; 3],
     distance_m: f64,
@@ -139,6 +147,7 @@ impl<'a> From<&Report<'a>> for FrameRecord<'a> {
             height: frame.height,
             measure: frame.sensor.measure.into(),
             intrinsics: frame.sensor.intrinsics.map(IntrinsicsRecord::from),
+            distortion: frame.sensor.distortion.map(DistortionRecord::from),
             method: report.method.name,
             parameters: parameters(report),
             noise: NoiseRecord::of(report),
@@ -184,6 +193,12 @@ impl From<Measure> for MeasureRecord {
             }
             Measure::Disparity => MeasureRecord::Disparity,
         }
+    }
+}
+
+impl From<Distortion> for DistortionRecord {
+    fn from(distortion: Distortion) -> Self {
+        DistortionRecord { model: distortion.model().name(), coefficients: distortion.coefficients().to_vec() }
     }
 }
 

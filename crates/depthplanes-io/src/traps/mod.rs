@@ -40,7 +40,7 @@ const TRAPS: &[&[Look]] = &[
         packing::multiples,
         unit::median,
     ],
-    &[camera::away, camera::of_disparity],
+    &[camera::of_disparity],
 ];
 
 /// The traps that a map may have fallen into.

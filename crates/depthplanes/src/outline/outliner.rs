@@ -9,6 +9,7 @@ use super::trace::Tracer;
 use crate::camera::Intrinsics;
 use crate::detection::Detection;
 use crate::error::{Error, Result};
+use crate::sensor::Sensor;
 
 /// The tolerance of [`Outliner::default`], pixels. The cracks along a straight edge are stairs of up
 /// to the square root of 2 across, so that 1.5 is enough to make a line of any of them.
@@ -97,8 +98,17 @@ impl Outliner {
     /// # Errors
     /// [`Error::Size`] and [`Error::Length`] if the label image is not one.
     pub fn outline(&mut self, detection: &Detection, camera: Option<&Intrinsics>) -> Result<&Outlines> {
+        self.outline_seen_by(detection, &Sensor::default().intrinsics(camera.copied()))
+    }
+
+    /// As [`Outliner::outline`], with all that is known of the sensor that the detection was made with: behind a lens that distorts,
+    /// points in metres lie on the true rays of the rings' corners.
+    ///
+    /// # Errors
+    /// As [`Outliner::outline`].
+    pub fn outline_seen_by(&mut self, detection: &Detection, sensor: &Sensor) -> Result<&Outlines> {
         let Outliner { tracer, holes, simplifier, huller, fitter, outlines } = self;
-        outlines.clear(camera);
+        outlines.clear(sensor);
         tracer.trace(detection)?;
         holes.filter(&mut tracer.rings, &tracer.corners);
         for rings in tracer.rings.chunk_by(|a, b| a.label == b.label) {

@@ -6,8 +6,9 @@ use super::corner::{Corner, point};
 use super::hull::Huller;
 use super::rectangle::{Fitter, Rectangle};
 use super::trace::TracedRing;
-use crate::camera::{Hessian, Intrinsics};
+use crate::camera::Hessian;
 use crate::detection::Plane;
+use crate::sensor::Sensor;
 use std::ops::Range;
 
 /// The outlines of a detection's planes. An [`super::Outliner`] owns one and reuses its memory.
@@ -15,7 +16,8 @@ use std::ops::Range;
 pub struct Outlines {
     pub(super) tolerance_px: f64,
     pub(super) min_hole_px: usize,
-    pub(super) camera: Option<Intrinsics>,
+    /// The sensor, if its camera is known.
+    pub(super) camera: Option<Sensor>,
     pub(super) corners: Vec<Corner>,
     pub(super) hulls: Vec<Corner>,
     pub(super) rings: Vec<RingRecord>,
@@ -49,8 +51,8 @@ pub(super) struct Ends {
 }
 
 impl Outlines {
-    pub(super) fn clear(&mut self, camera: Option<&Intrinsics>) {
-        self.camera = camera.copied();
+    pub(super) fn clear(&mut self, sensor: &Sensor) {
+        self.camera = sensor.intrinsics.map(|_| *sensor);
         self.corners.clear();
         self.hulls.clear();
         self.rings.clear();
@@ -98,7 +100,7 @@ impl Outlines {
         let surface = plane.metric.filter(|metric| metric.area_m2.is_some())?.plane;
         let camera = self.camera?;
         let mut corners = self.corners[first.corners..].iter().chain(&self.hulls[first.hulls..]);
-        corners.all(|&corner| surface.point_at(point(corner), &camera).is_some()).then_some(surface)
+        corners.all(|&corner| surface.point_seen_by(point(corner), &camera).is_some()).then_some(surface)
     }
 
     /// How far rings may deviate from the pixels' cracks, pixels.
@@ -164,7 +166,7 @@ impl<'a> Outline<'a> {
         self.plane.rectangle_m
     }
 
-    fn surface(&self) -> Option<(Hessian, Intrinsics)> {
+    fn surface(&self) -> Option<(Hessian, Sensor)> {
         self.plane.surface.zip(self.all.camera)
     }
 }
@@ -197,7 +199,7 @@ impl<'a> Polygon<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Ring<'a> {
     corners: &'a [Corner],
-    surface: Option<(Hessian, Intrinsics)>,
+    surface: Option<(Hessian, Sensor)>,
 }
 
 impl<'a> Ring<'a> {
@@ -210,15 +212,15 @@ impl<'a> Ring<'a> {
     /// [`Outline::is_metric`].
     pub fn points_m(&self) -> Option<impl ExactSizeIterator<Item = [f64; 3]> + use<'a>> {
         let (plane, camera) = self.surface?;
-        let on_plane = move |&corner| plane.point_at(point(corner), &camera).expect("checked when it was made");
+        let on_plane = move |&corner| plane.point_seen_by(point(corner), &camera).expect("checked when it was made");
         Some(self.corners.iter().map(on_plane))
     }
 }
 
 /// Rings are traced counter-clockwise on the picture; where the picture is mirrored, they are reversed, but for their
 /// first corner.
-fn face_camera(ring: &mut [Corner], camera: Option<Intrinsics>) {
-    let mirrored = camera.is_some_and(|camera| camera.fx * camera.fy < 0.0);
+fn face_camera(ring: &mut [Corner], camera: Option<Sensor>) {
+    let mirrored = camera.and_then(|sensor| sensor.intrinsics).is_some_and(|camera| camera.fx * camera.fy < 0.0);
     if let (true, [_, others @ ..]) = (mirrored, ring) {
         others.reverse();
     }

@@ -150,8 +150,13 @@ mod tests {
     use super::*;
     use crate::util::random::Random;
 
-    const METRES: Sensor =
-        Sensor { measure: Measure::Depth { metres: 1.0 }, intrinsics: None, noise: None, smooth_noise: None };
+    const METRES: Sensor = Sensor {
+        measure: Measure::Depth { metres: 1.0 },
+        intrinsics: None,
+        distortion: None,
+        noise: None,
+        smooth_noise: None,
+    };
 
     /// The counts of a map of 50 columns, and how many a map unit has.
     fn counts_of<T: Pixel>(map: &[T], sensor: Sensor) -> Option<(Vec<u16>, f64)> {

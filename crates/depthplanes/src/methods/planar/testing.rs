@@ -22,7 +22,7 @@ pub(super) const THRESHOLD: f64 = 4.0;
 
 /// What the synthetic maps are taken with.
 pub(super) const SENSOR: Sensor =
-    Sensor { measure: Measure::Disparity, intrinsics: None, noise: None, smooth_noise: None };
+    Sensor { measure: Measure::Disparity, intrinsics: None, distortion: None, noise: None, smooth_noise: None };
 
 /// A synthetic map: disparity, so that q is the value.
 #[derive(Clone, Debug)]

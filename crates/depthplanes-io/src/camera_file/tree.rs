@@ -1,0 +1,487 @@
+//! Cameras in a tree of names and values, from JSON or YAML, whatever their nesting: numbers under the names that
+//! programs give to focal lengths, principal points, matrices, sizes and distortion coefficients.
+//!
+//! Names are compared without case and signs. Of several cameras that differ one for depth is taken, or the left one of a
+//! pair, and said; others are refused with what was found.
+
+use serde_json::{Map, Value};
+
+use super::camera::{CameraFile, matrix, pinhole, size, unreadable, with_lens};
+use crate::encoding::Stereo;
+use crate::error::Result;
+
+type Object = Map<String, Value>;
+
+const FOCAL: [&[&str]; 2] = [
+    &["fx", "flx", "focalx", "focallengthx", "alphax", "ffx"],
+    &["fy", "fly", "focaly", "focallengthy", "alphay", "ffy"],
+];
+const BOTH_FOCALS: &[&str] = &["f", "focal", "focallength", "focallengths", "fl"];
+const CENTRE: [&[&str]; 2] = [
+    &["cx", "ppx", "principalx", "principalpointx", "centerx", "u0", "ox", "px"],
+    &["cy", "ppy", "principaly", "principalpointy", "centery", "v0", "oy", "py"],
+];
+const BOTH_CENTRES: &[&str] = &["principalpoint", "pp", "center", "opticalcenter", "principal"];
+const MATRIX: &[&str] = &[
+    "k", "mtx", "m1", "m2", "k1", "k2", "kl", "kr", "kdepth", "depthk", "kir", "krgb", "kcolor", "camk", "cammat", "a",
+];
+const SIDES: [&[&str]; 2] = [
+    &["width", "w", "imagewidth", "imgwidth", "resolutionwidth", "resx", "sizex", "dw"],
+    &["height", "h", "imageheight", "imgheight", "resolutionheight", "resy", "sizey", "dh"],
+];
+const BOTH_SIDES: &[&str] = &[
+    "resolution",
+    "imageresolution",
+    "imagesize",
+    "imgsize",
+    "size",
+    "imageshape",
+    "shape",
+    "imagedimensions",
+    "dimensions",
+    "dims",
+    "videosize",
+];
+const LENS: &[&str] = &[
+    "d",
+    "distortioncoefficients",
+    "distortioncoeffs",
+    "distortioncoeff",
+    "distcoeffs",
+    "distcoeff",
+    "coeffs",
+    "coefficients",
+    "distortion",
+    "dist",
+    "distortionparams",
+    "distortionparameters",
+    "distortionvector",
+    "distcoefs",
+    "distcoef",
+    "distortions",
+    "d1",
+    "dl",
+];
+const MODELS: &[&str] = &[
+    "distortionmodel",
+    "distortiontype",
+    "lensmodel",
+    "distortion",
+    "model",
+    "cameramodel",
+    "cameratype",
+    "projectionmodel",
+];
+
+/// A name without case and signs.
+pub(super) fn plain(name: &str) -> String {
+    name.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_lowercase()
+}
+
+/// The value under one of some names, the first of them first.
+pub(super) fn get<'a>(object: &'a Object, names: &[&str]) -> Option<&'a Value> {
+    names.iter().find_map(|&name| object.iter().find(|(key, _)| plain(key) == name).map(|(_, value)| value))
+}
+
+/// A number, or a text that is one.
+pub(super) fn number(value: &Value) -> Option<f64> {
+    value.as_f64().or_else(|| value.as_str()?.trim().parse().ok().filter(|number: &f64| number.is_finite()))
+}
+
+fn number_of(object: &Object, names: &[&str]) -> Option<f64> {
+    number(get(object, names)?)
+}
+
+/// The numbers of a text of numbers alone, with blanks, commas, semicolons or brackets between.
+pub(super) fn words(text: &str) -> Option<Vec<f64>> {
+    let is_gap = |c: char| c.is_whitespace() || ",;[](){}".contains(c);
+    let words = text.split(is_gap).filter(|word| !word.is_empty());
+    words.map(|word| word.parse().ok().filter(|number: &f64| number.is_finite())).collect()
+}
+
+/// All numbers of a list of whatever nesting, of a text of numbers, or of OpenCV's and ROS's `data`.
+pub(super) fn numbers(value: &Value) -> Option<Vec<f64>> {
+    match value {
+        Value::Array(items) => {
+            let mut all = Vec::new();
+            for item in items {
+                match item {
+                    Value::Array(_) => all.extend(numbers(item)?),
+                    _ => all.push(number(item)?),
+                }
+            }
+            (all.len() <= 64).then_some(all)
+        }
+        Value::String(text) => words(text).filter(|numbers| numbers.len() > 1),
+        Value::Object(object) => numbers(get(object, &["data"])?),
+        _ => None,
+    }
+}
+
+/// Whether a name is that of a camera matrix.
+fn is_matrix(name: &str) -> bool {
+    let name = plain(name);
+    let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
+    (has(&["intrinsic", "cameramatrix", "cammatrix", "cameramat", "calibrationmatrix", "kmatrix"])
+        || MATRIX.contains(&name.as_str()))
+        && !has(&["extrinsic", "inv"])
+}
+
+/// A camera and the way to it.
+struct Found {
+    path: String,
+    camera: CameraFile,
+}
+
+/// The camera of a tree.
+///
+/// # Errors
+/// If there is none, or several that differ.
+pub(super) fn parse(root: &Value) -> Result<CameraFile> {
+    let mut found = Vec::new();
+    let mut wrong = None;
+    walk(root, "", &mut Vec::new(), &mut found, &mut wrong);
+    match (found.is_empty(), wrong) {
+        (true, Some(error)) => Err(error),
+        (true, None) => Err(unreadable(format!("no camera is stated under a name known here{}", names_of(root)))),
+        _ => one_of(found),
+    }
+}
+
+/// What a tree has at its root, for a message.
+fn names_of(root: &Value) -> String {
+    match root {
+        Value::Object(object) if !object.is_empty() => {
+            let names: Vec<&str> = object.keys().take(8).map(String::as_str).collect();
+            format!("; it states {}", names.join(", "))
+        }
+        _ => String::new(),
+    }
+}
+
+fn walk<'a>(
+    value: &'a Value,
+    path: &str,
+    above: &mut Vec<&'a Object>,
+    found: &mut Vec<Found>,
+    wrong: &mut Option<crate::error::Error>,
+) {
+    if found.len() > 10_000 {
+        return;
+    }
+    let below = |key: &str| if path.is_empty() { key.to_string() } else { format!("{path}.{key}") };
+    match value {
+        Value::Array(items) if numbers(value).is_none() => {
+            for (at, item) in items.iter().enumerate() {
+                walk(item, &below(&at.to_string()), above, found, wrong);
+            }
+        }
+        Value::Object(object) => {
+            above.push(object);
+            for (key, camera) in cameras_of(object, above) {
+                match camera {
+                    Ok(camera) => {
+                        found.push(Found { path: if key.is_empty() { path.into() } else { below(&key) }, camera })
+                    }
+                    Err(error) => *wrong = Some(wrong.take().unwrap_or(error)),
+                }
+            }
+            for (key, value) in object {
+                walk(value, &below(key), above, found, wrong);
+            }
+            above.pop();
+        }
+        _ => (),
+    }
+}
+
+/// The cameras that an object states by itself: by names of single numbers, or by matrices.
+fn cameras_of(object: &Object, above: &[&Object]) -> Vec<(String, Result<CameraFile>)> {
+    if let Some(camera) = ros(object) {
+        return vec![(String::new(), camera.and_then(|camera| complete(camera, object, above, None)))];
+    }
+    let mut all = Vec::new();
+    if let Some(camera) = by_names(object) {
+        all.push((String::new(), camera));
+    }
+    for (key, value) in object.iter().filter(|(key, _)| is_matrix(key)) {
+        let Some(numbers) = numbers(value) else { continue };
+        let camera = match numbers[..] {
+            [_] | [] => continue,
+            [fx, fy, cx, cy] => pinhole(fx, fy, cx, cy),
+            [_, _, _, _, _] | [_, _, _, _, _, _] | [_, _, _] | [_, _] => continue, // parameters of another model
+            _ => matrix(&numbers),
+        };
+        all.push((key.clone(), camera));
+    }
+    all.into_iter()
+        .map(|(key, camera)| {
+            let camera = camera.and_then(|camera| complete(camera, object, above, Some(&key)));
+            (key, camera)
+        })
+        .collect()
+}
+
+/// `fx, fy, cx, cy` under any of their names.
+fn by_names(object: &Object) -> Option<Result<CameraFile>> {
+    let pair = |names: &[&str]| {
+        let value = get(object, names)?;
+        match numbers(value).as_deref() {
+            Some(&[x, y]) => Some([x, y]),
+            _ => match value {
+                Value::Object(inner) => Some([number_of(inner, &["x", "u"])?, number_of(inner, &["y", "v"])?]),
+                value => number(value).map(|number| [number; 2]),
+            },
+        }
+    };
+    let each = |names: &[&[&str]; 2]| Some([number_of(object, names[0])?, number_of(object, names[1])?]);
+    let only_x = || number_of(object, FOCAL[0]).map(|focal| [focal; 2]);
+    let [fx, fy] = each(&FOCAL).or_else(|| pair(BOTH_FOCALS)).or_else(only_x)?;
+    let [cx, cy] = each(&CENTRE).or_else(|| pair(BOTH_CENTRES))?;
+    Some(pinhole(fx, fy, cx, cy))
+}
+
+/// A ROS camera: `K` (3 x 3) of the raw picture with `D`, `P` (3 x 4) of the rectified one unless it is all 0, with
+/// binning and region of interest applied as image_geometry does. `P[3]` is `-fx * baseline` for the right camera of a
+/// rig.
+fn ros(object: &Object) -> Option<Result<CameraFile>> {
+    let p =
+        numbers(get(object, &["p", "projectionmatrix"])?).filter(|p| p.len() == 12 && p.iter().any(|&x| x != 0.0))?;
+    let k =
+        get(object, &["k", "cameramatrix"]).and_then(numbers).filter(|k| k.len() == 9 && k.iter().any(|&x| x != 0.0));
+    Some(ros_camera(object, &p, k.as_deref()))
+}
+
+fn ros_camera(object: &Object, p: &[f64], k: Option<&[f64]>) -> Result<CameraFile> {
+    let mut rectified = matrix(p)?;
+    let baseline_m = -p[3] / p[0];
+    if baseline_m > 0.0 && baseline_m.is_finite() {
+        rectified.stereo = Some(Stereo { focal_px: p[0], baseline_m, doffs_px: 0.0 });
+    }
+    let Some(k) = k else { return Ok(rectified) };
+    let raw = matrix(k)?;
+    let coefficients = lens(object, &model_of(&[object])).unwrap_or_default();
+    let is_bent = coefficients.iter().any(|&k| k != 0.0);
+    let [a, b] = [raw.intrinsics, rectified.intrinsics].map(|c| [c.fx, c.fy, c.cx, c.cy]);
+    if a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.01) {
+        let stereo = rectified.stereo;
+        return Ok(CameraFile { stereo, ..with_lens(raw, &model_of(&[object]), &coefficients, false)? });
+    }
+    // P is that of the rectified picture, as image_geometry takes it.
+    let bent = with_lens(raw, &model_of(&[object]), &coefficients, false)?;
+    rectified.otherwise = Some((bent.intrinsics, bent.distortion));
+    rectified.rectified = true;
+    let what = if is_bent { "P differs from K" } else { "P differs from K, without distortion" };
+    Ok(rectified.note(format!(
+        "{what}: the map is taken to be of the rectified picture, whose camera is P; --rectified=no takes K and D, for maps of the \
+         raw picture"
+    )))
+}
+
+/// Binning and region of interest, as image_geometry applies them to K and P.
+fn binned(camera: &mut CameraFile, object: &Object) {
+    let binning =
+        [["binningx"], ["binningy"]].map(|names| number_of(object, &names).filter(|&b| b > 1.0).unwrap_or(1.0));
+    let roi = get(object, &["roi"]).and_then(Value::as_object);
+    let of_roi = |name: &str| roi.and_then(|roi| number_of(roi, &[name])).filter(|&n| n > 0.0);
+    let offset = [of_roi("xoffset").unwrap_or(0.0), of_roi("yoffset").unwrap_or(0.0)];
+    let (width, height) = (of_roi("width"), of_roi("height"));
+    if binning == [1.0; 2] && offset == [0.0; 2] && width.is_none() {
+        return;
+    }
+    let full = camera.size;
+    let apply = |camera: &mut depthplanes::Intrinsics| {
+        camera.cx = (camera.cx - offset[0]) / binning[0];
+        camera.cy = (camera.cy - offset[1]) / binning[1];
+        camera.fx /= binning[0];
+        camera.fy /= binning[1];
+    };
+    apply(&mut camera.intrinsics);
+    if let Some((other, _)) = &mut camera.otherwise {
+        apply(other);
+    }
+    if let Some(rig) = &mut camera.stereo {
+        rig.focal_px /= binning[0];
+    }
+    let side =
+        |roi: Option<f64>, full: Option<usize>, binning: f64| Some((roi.or(full.map(|n| n as f64))? / binning).floor());
+    camera.size =
+        size(side(width, full.map(|size| size.0), binning[0]), side(height, full.map(|size| size.1), binning[1]));
+    if camera.size != full {
+        camera.notes.push("binning and region of interest (roi) are applied".into());
+    }
+}
+
+/// With size, lens, unit, baseline and binning, each as near above the camera as it is stated. `key`: the name of the
+/// matrix, beside which that of the lens stands; none if the lens is known.
+fn complete(camera: CameraFile, object: &Object, above: &[&Object], key: Option<&str>) -> Result<CameraFile> {
+    let centre = [camera.intrinsics.cx, camera.intrinsics.cy];
+    let mut camera = camera.size(above.iter().rev().find_map(|object| size_of(object, centre)));
+    let near: Vec<&Object> = above.iter().rev().copied().collect();
+    if let Some(key) = key {
+        let model = model_of(&near);
+        let above = || near.get(1).and_then(|object| lens(object, &model));
+        let coefficients = lens_beside(object, key, &model).or_else(above).unwrap_or_default();
+        camera = with_lens(camera, &model, &coefficients, false)?;
+    }
+    binned(&mut camera, object);
+    camera.unit_m = near.iter().find_map(|object| unit_m(object));
+    if camera.stereo.is_none() {
+        let baseline = number_of(object, &["baseline", "baselinem", "stereob"]).filter(|&b| b > 0.0 && b < 5.0);
+        let focal_px = camera.intrinsics.fx.abs();
+        camera.stereo = baseline.map(|baseline_m| Stereo { focal_px, baseline_m, doffs_px: 0.0 });
+    }
+    Ok(camera)
+}
+
+/// Columns and rows. Of a pair, of which programs write either first, the order that the principal point suits better.
+fn size_of(object: &Object, [cx, cy]: [f64; 2]) -> Option<(usize, usize)> {
+    let own = size(number_of(object, SIDES[0]), number_of(object, SIDES[1]));
+    own.or_else(|| match get(object, BOTH_SIDES)? {
+        Value::Object(inner) => size(number_of(inner, SIDES[0]), number_of(inner, SIDES[1])),
+        value => {
+            let pair = numbers(value)?;
+            let [a, b] = [*pair.first()?, *pair.get(1)?];
+            let off = |width: f64, height: f64| (2.0 * cx - width).abs() + (2.0 * cy - height).abs();
+            if off(b, a) < off(a, b) { size(Some(b), Some(a)) } else { size(Some(a), Some(b)) }
+        }
+    })
+}
+
+/// The coefficients that belong to the matrix of a name: of several the ones whose name begins or ends as the matrix's.
+fn lens_beside(object: &Object, key: &str, model: &str) -> Option<Vec<f64>> {
+    let key = plain(key);
+    let is_lens = |name: &str| {
+        (name.contains("dist") && !name.contains("model")) || ["d", "d1", "d2", "dl", "dr"].contains(&name)
+    };
+    let all: Vec<(String, Vec<f64>)> = object
+        .iter()
+        .filter_map(|(name, value)| Some((plain(name), numbers(value)?)))
+        .filter(|(name, numbers)| is_lens(name) && numbers.len() > 1)
+        .collect();
+    if all.len() < 2 {
+        return all.into_iter().next().map(|(_, numbers)| numbers).or_else(|| lens(object, model));
+    }
+    let tail = |name: &str| name.chars().last().filter(|c| "12lrt".contains(*c));
+    let same_end = all.iter().find(|(name, _)| tail(name).is_some() && tail(name) == tail(&key));
+    let same_start = || all.iter().find(|(name, _)| name.get(..2) == key.get(..2));
+    same_end.or_else(same_start).map(|(_, numbers)| numbers.clone())
+}
+
+/// The coefficients of a lens in OpenCV's order.
+fn lens(object: &Object, model: &str) -> Option<Vec<f64>> {
+    if let Some(numbers) = LENS.iter().find_map(|name| numbers(get(object, &[name])?)) {
+        return Some(numbers);
+    }
+    if let Some(Value::Object(inner)) = get(object, LENS) {
+        return lens(inner, model);
+    }
+    let names = ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"];
+    let values = names.map(|name| number_of(object, &[name]));
+    if values.iter().all(Option::is_none) {
+        return None;
+    }
+    if super::camera::model(model) == Some(depthplanes::DistortionModel::KannalaBrandt) {
+        return Some([0, 1, 4, 5].map(|at| values[at].unwrap_or(0.0)).to_vec());
+    }
+    Some(values.map(|value| value.unwrap_or(0.0)).to_vec())
+}
+
+/// The name of the model, as near as it is stated; empty if it is not.
+fn model_of(near: &[&Object]) -> String {
+    let named = |object: &&Object| {
+        MODELS.iter().find_map(|name| match get(object, &[name])? {
+            Value::String(name) if words(name).is_none() && !name.is_empty() => Some(name.clone()),
+            // RealSense's numbers of its models.
+            Value::Number(number) if *name == "model" => Some(
+                (*[
+                    "none",
+                    "modified brown conrady",
+                    "inverse brown conrady",
+                    "ftheta",
+                    "brown conrady",
+                    "kannala brandt",
+                ]
+                .get(number.as_f64()? as usize)?)
+                .to_string(),
+            ),
+            _ => None,
+        })
+    };
+    near.iter().take(2).find_map(named).unwrap_or_default()
+}
+
+/// Metres per unit of maps. BOP's scale makes millimetres; others make metres, or are units in a metre.
+fn unit_m(object: &Object) -> Option<f64> {
+    if let Some(units) = number_of(object, &["depthmapfactor", "depthfactor"]) {
+        return (units > 0.0).then(|| units.recip());
+    }
+    let scale = number_of(object, &["depthscale", "depthunits", "depthunit", "integerdepthscale"])
+        .filter(|&scale| scale > 0.0)?;
+    if get(object, &["camk"]).is_some() || get(object, &["cx"]).is_some() && scale == 1.0 {
+        return Some(0.001 * scale);
+    }
+    match scale {
+        ..=0.05 => Some(scale),
+        100.0.. => Some(scale.recip()),
+        _ => None,
+    }
+}
+
+/// The one camera of those found.
+fn one_of(mut found: Vec<Found>) -> Result<CameraFile> {
+    let same = |a: &CameraFile, b: &CameraFile| {
+        a.intrinsics == b.intrinsics && a.distortion == b.distortion && a.size == b.size
+    };
+    let mut distinct: Vec<usize> = Vec::new();
+    for at in 0..found.len() {
+        if !distinct.iter().any(|&other| same(&found[other].camera, &found[at].camera)) {
+            distinct.push(at);
+        }
+        if distinct.len() > 100 {
+            break;
+        }
+    }
+    let taken = match distinct[..] {
+        [only] => only,
+        _ => {
+            let lower = |at: usize| found[at].path.to_lowercase();
+            let with = |word: &str| distinct.iter().copied().filter(|&at| lower(at).contains(word)).collect::<Vec<_>>();
+            let pair = |left: &str, right: &str| {
+                let [left, right] = [with(left), with(right)];
+                (distinct.len() == 2 && left.len() == 1 && right.len() == 1 && left != right).then(|| left[0])
+            };
+            let depth = with("depth");
+            let choice = if depth.len() == 1 { Some(depth[0]) } else { None };
+            let choice = choice.or_else(|| pair("left", "right")).or_else(|| pair("cam0", "cam1"));
+            let choice = choice.or_else(|| pair("1", "2")).or_else(|| pair("0", "1"));
+            choice.ok_or_else(|| several(&found, &distinct))?
+        }
+    };
+    let Found { path, camera } = found.swap_remove(taken);
+    if distinct.len() == 1 {
+        return Ok(camera);
+    }
+    let others: Vec<&str> = distinct
+        .iter()
+        .filter(|&&at| at != taken)
+        .filter_map(|&at| Some(found.get(at)?.path.as_str()))
+        .take(5)
+        .collect();
+    let note = format!("of {} cameras `{path}` is taken, not {}", distinct.len(), others.join(", "));
+    Ok(camera.named(path).note(note))
+}
+
+fn several(found: &[Found], distinct: &[usize]) -> crate::error::Error {
+    let shown = |&at: &usize| {
+        let Found { path, camera } = &found[at];
+        let camera = camera.intrinsics;
+        format!("`{path}` {},{},{},{}", camera.fx, camera.fy, camera.cx, camera.cy)
+    };
+    let listed: Vec<String> = distinct.iter().take(5).map(shown).collect();
+    let more = if distinct.len() > 5 { " and others" } else { "" };
+    unreadable(format!(
+        "it has several cameras that differ: {}{more}; give the one of the map with --intrinsics",
+        listed.join("; ")
+    ))
+}

@@ -1,0 +1,266 @@
+//! The camera of a map: the one that is stated, held against the map's size.
+//!
+//! A camera that cannot be the map's is refused with what to type instead; one that is unlikely is noted.
+
+use depthplanes::{Distortion, DistortionModel, Intrinsics};
+
+use crate::camera_file::CameraFile;
+use crate::encoding::Stereo;
+use crate::error::{Error, Result};
+use crate::presets::SensorPreset;
+
+/// Columns and rows.
+type Size = (usize, usize);
+
+/// Furthest that a principal point lies from the middle without a note, as a share of the side: our choice. It is 0.11 in
+/// Middlebury's rigs.
+const FAR: f64 = 0.2;
+
+/// Fields of view without a note, degrees: our choice. Long lenses and fisheyes are beyond them.
+const FIELD_DEG: [f64; 2] = [5.0, 150.0];
+
+/// What is stated of a map's camera.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stated<'a> {
+    /// Intrinsics by themselves.
+    pub(crate) intrinsics: Option<Intrinsics>,
+    /// A camera file, where there are none.
+    pub(crate) file: Option<&'a CameraFile>,
+    /// The size that either is for.
+    pub(crate) size: Option<Size>,
+    /// Whether the map is of the rectified picture, where the file has cameras for both.
+    pub(crate) rectified: Option<bool>,
+    /// The sensor, whose camera is taken where nothing else is stated.
+    pub(crate) preset: Option<&'a SensorPreset>,
+}
+
+/// The camera of a map.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MapCamera {
+    pub(crate) intrinsics: Option<Intrinsics>,
+    pub(crate) distortion: Option<Distortion>,
+    pub(crate) stereo: Option<Stereo>,
+    /// Metres per map unit, if the file states it.
+    pub(crate) unit_m: Option<f64>,
+    pub(crate) notes: Vec<String>,
+}
+
+/// The camera for a map of a size.
+///
+/// # Errors
+/// [`Error::Parameter`] for a camera of another size, one whose principal point lies outside of the map, and focal lengths
+/// in the place of the principal point; [`Error::Library`] for one that cannot be.
+pub(crate) fn map_camera(stated: &Stated<'_>, map: Size) -> Result<MapCamera> {
+    if let Some(given) = stated.intrinsics {
+        let Intrinsics { fx, fy, cx, cy } = given;
+        let intrinsics = Intrinsics::new(fx, fy, cx, cy)?;
+        let (intrinsics, _) = scaled_to(&intrinsics, stated.size, map)?;
+        let notes = checked(&intrinsics, map, stated.size.is_some(), None)?;
+        return Ok(MapCamera { intrinsics: Some(intrinsics), notes, ..MapCamera::default() });
+    }
+    match (stated.file, stated.preset.and_then(|preset| preset.camera)) {
+        (Some(file), _) => of_file(stated, file, map),
+        (None, Some((width, height, intrinsics))) if (width, height) == map => {
+            Ok(MapCamera { intrinsics: Some(intrinsics), ..MapCamera::default() })
+        }
+        (None, Some((width, height, _))) => {
+            let (w, h) = map;
+            let note = format!("the preset's camera is for {width} x {height}, not {w} x {h}: not used");
+            Ok(MapCamera { notes: vec![note], ..MapCamera::default() })
+        }
+        (None, None) => Ok(MapCamera::default()),
+    }
+}
+
+fn of_file(stated: &Stated<'_>, file: &CameraFile, map: Size) -> Result<MapCamera> {
+    let camera = file.for_size(stated.size.unwrap_or(map));
+    let (own, distortion) = camera.seen(stated.rectified);
+    let size = stated.size.or(camera.size);
+    if let (None, Some(size), 2..) = (stated.size, camera.size, file.choices.len())
+        && size != map
+        && file.choices.iter().any(|choice| choice.size != camera.size)
+    {
+        return Err(no_choice(file, map));
+    }
+    if let (None, Some(size)) = (stated.size, camera.size)
+        && size != map
+    {
+        return Err(other_size(&own, size, map));
+    }
+    let (intrinsics, scale) = scaled_to(&own, size, map)?;
+    let mut notes = camera.notes.clone();
+    notes.extend(checked(&intrinsics, map, size.is_some(), distortion.as_ref())?);
+    notes.extend(lens_note(stated, camera, distortion.as_ref()));
+    let stereo =
+        camera.stereo.map(|rig| Stereo { focal_px: rig.focal_px * scale, doffs_px: rig.doffs_px * scale, ..rig });
+    Ok(MapCamera { intrinsics: Some(intrinsics), distortion, stereo, unit_m: camera.unit_m, notes })
+}
+
+/// What is done about the lens, unless a flag has said it.
+fn lens_note(stated: &Stated<'_>, camera: &CameraFile, distortion: Option<&Distortion>) -> Option<String> {
+    let (_, other) = camera.otherwise.as_ref()?;
+    if stated.rectified.is_some() {
+        return None;
+    }
+    let model = |distortion: &Distortion| distortion.model().name();
+    match (distortion, other) {
+        (Some(distortion), _) => Some(format!(
+            "the lens distortion of the camera file ({}) is undone; --rectified if the map is of the undistorted picture",
+            model(distortion)
+        )),
+        (None, Some(distortion)) if !camera.notes.iter().any(|note| note.contains("--rectified")) => Some(format!(
+            "the map is taken to be rectified, and the lens distortion of the camera file ({}) is not used; --rectified=no undoes it",
+            model(distortion)
+        )),
+        _ => None,
+    }
+}
+
+/// The camera of one size for maps of another, and the factor.
+fn scaled_to(camera: &Intrinsics, size: Option<Size>, map: Size) -> Result<(Intrinsics, f64)> {
+    match size {
+        Some(size) if size != map => {
+            let camera = scaled(camera, size, map).ok_or_else(|| other_size(camera, size, map))?;
+            Ok((camera, map.0 as f64 / size.0 as f64))
+        }
+        _ => Ok((*camera, 1.0)),
+    }
+}
+
+/// The camera of a picture for the same picture with other pixels, if the sides have the same ratio to within a pixel.
+/// Pixel centres are at integers.
+fn scaled(camera: &Intrinsics, from: Size, to: Size) -> Option<Intrinsics> {
+    let [from, to] = [from, to].map(|(width, height)| [width, height].map(|side| side.max(1) as f64));
+    let scale = [to[0] / from[0], to[1] / from[1]];
+    let off = [(from[1] * scale[0] - to[1]).abs(), (from[0] * scale[1] - to[0]).abs()];
+    let is_alike = off[0].min(off[1]) <= scale[0].max(1.0) && (scale[0] / scale[1] - 1.0).abs() < 0.03;
+    let centre = |c: f64, scale: f64| (c + 0.5) * scale - 0.5;
+    is_alike.then(|| Intrinsics {
+        fx: camera.fx * scale[0],
+        fy: camera.fy * scale[1],
+        cx: centre(camera.cx, scale[0]),
+        cy: centre(camera.cy, scale[1]),
+    })
+}
+
+/// The flag for a camera, ready to paste.
+fn flag(camera: &Intrinsics) -> String {
+    let round = |x: f64| (x * 1e4).round() / 1e4;
+    let [fx, fy, cx, cy] = [camera.fx, camera.fy, camera.cx, camera.cy].map(round);
+    format!("--intrinsics={fx},{fy},{cx},{cy}")
+}
+
+fn other_size(camera: &Intrinsics, (width, height): Size, map: Size) -> Error {
+    let (w, h) = map;
+    let accepted = match scaled(camera, (width, height), map) {
+        Some(scaled) => format!(
+            "the camera of this map, which has {w} x {h} pixels; scaled it is {}, and --camera-size {width}x{height} scales it",
+            flag(&scaled)
+        ),
+        None => format!(
+            "the camera of this map, which has {w} x {h} pixels and another shape: if it is a part of the picture, take the part's \
+             corner off the principal point and give --intrinsics fx,fy,cx,cy"
+        ),
+    };
+    Error::parameter("camera", format_args!("for {width} x {height} pixels"), accepted)
+}
+
+/// No camera of the file is for the map's size.
+fn no_choice(file: &CameraFile, (w, h): Size) -> Error {
+    let shown = |camera: &CameraFile| match camera.size {
+        Some((width, height)) => format!("{} {width}x{height}", camera.name),
+        None => camera.name.clone(),
+    };
+    let names: Vec<String> = file.choices.iter().take(12).map(shown).collect();
+    let accepted = format!(
+        "a map of one of the sizes in the file: {}; or --camera-size WxH, which says which of them is scaled to the map",
+        names.join(", ")
+    );
+    Error::parameter("camera", format_args!("for other sizes than {w} x {h}"), accepted)
+}
+
+/// Notes on a camera that is unlikely for a map; `is_size_stated` if a size was stated, so that the picture may well be a
+/// part of a larger one.
+fn checked(camera: &Intrinsics, map: Size, is_size_stated: bool, lens: Option<&Distortion>) -> Result<Vec<String>> {
+    let Intrinsics { fx, fy, cx, cy } = *camera;
+    let (w, h) = map;
+    let sides = [w as f64, h as f64];
+    let off = |at: [f64; 2]| [0, 1].map(|i| (at[i] - 0.5 * (sides[i] - 1.0)).abs() / sides[i]);
+    let is_middle = |at: [f64; 2]| off(at).iter().all(|&off| off <= FAR);
+    let is_outside = [cx, cy].iter().zip(sides).any(|(&c, side)| c < -0.5 || c > side - 0.5);
+    let mut notes = Vec::new();
+    // fx and fy stand where cx and cy belong: those are equal, these are the middle of the map or of a picture of its shape.
+    let is_shape = ((2.0 * fx + 1.0) / (2.0 * fy + 1.0) / (sides[0] / sides[1]) - 1.0).abs() < 0.02;
+    let is_swapped = (cx - cy).abs() <= 0.05 * cx.abs() && fx != fy && (is_middle([fx, fy]) || is_shape && is_outside);
+    if !is_middle([cx, cy]) && is_swapped {
+        let swapped = Intrinsics { fx: cx, fy: cy, cx: fx, cy: fy };
+        let own = whole_picture(&swapped, map).map_or(swapped, |(_, scaled)| scaled);
+        let accepted = format!("focal lengths first, then the principal point: {}", flag(&own));
+        return Err(Error::parameter("camera", format_args!("{fx},{fy},{cx},{cy}"), accepted));
+    }
+    let guess = whole_picture(camera, map);
+    if is_outside && !is_size_stated {
+        let accepted = match guess {
+            Some((size, scaled)) => format!(
+                "a principal point within the map, which has {w} x {h} pixels; this one is that of {} x {}: {}, or --camera-size {}x{}",
+                size.0,
+                size.1,
+                flag(&scaled),
+                size.0,
+                size.1
+            ),
+            None => format!(
+                "a principal point within the map, which has {w} x {h} pixels; --camera-size WxH if the camera is for another size, \
+                 --camera-size {w}x{h} if the map is a part of a larger picture"
+            ),
+        };
+        return Err(Error::parameter("principal point", format_args!("{cx},{cy}"), accepted));
+    }
+    if let (Some((size, scaled)), false) = (guess, is_size_stated) {
+        notes.push(format!(
+            "the principal point {cx},{cy} is the middle of {} x {} pixels, and the map has {w} x {h}: if the camera is for that size, give \
+             --camera-size {}x{} or {}",
+            size.0,
+            size.1,
+            size.0,
+            size.1,
+            flag(&scaled)
+        ));
+    } else if !is_middle([cx, cy]) {
+        notes.push(format!(
+            "the principal point {cx},{cy} lies far from the middle of {w} x {h} pixels: right if the map is a part of a larger picture, \
+             else check --intrinsics, --camera and --camera-size"
+        ));
+    }
+    if lens.is_none_or(|lens| lens.model() != DistortionModel::KannalaBrandt) {
+        let field = |side: f64, focal: f64| 2.0 * (0.5 * side / focal.abs()).atan().to_degrees();
+        let fields = [field(sides[0], fx), field(sides[1], fy)];
+        if fields.iter().any(|field| !(FIELD_DEG[0]..=FIELD_DEG[1]).contains(field)) {
+            notes.push(format!(
+                "focal lengths of {fx} and {fy} pixels mean a field of view of {:.1} x {:.1} degrees: check --intrinsics, --camera and \
+                 --camera-size",
+                fields[0], fields[1]
+            ));
+        }
+    }
+    Ok(notes)
+}
+
+/// The size of which the principal point is the middle, and the camera scaled to the map, if the map has that shape and
+/// is clearly of another size.
+fn whole_picture(camera: &Intrinsics, map: Size) -> Option<(Size, Intrinsics)> {
+    let side = |c: f64| (c > 4.0 && c < 1e5).then(|| (2.0 * c + 1.0).round() as usize);
+    let size = (side(camera.cx)?, side(camera.cy)?);
+    let ratio = size.0 as f64 / map.0 as f64;
+    // A calibrated principal point is off the middle by a hundredth.
+    let is_alike = (ratio / (size.1 as f64 / map.1 as f64) - 1.0).abs() < 0.03;
+    if !is_alike || (0.75..1.34).contains(&ratio) {
+        return None;
+    }
+    // The sizes of pictures are even.
+    let even = |n: usize| n - n % 2;
+    let nice = (even(size.0), even(size.1));
+    let size = if scaled(camera, nice, map).is_some() { nice } else { size };
+    let exact = (size.0, (size.0 as f64 * map.1 as f64 / map.0 as f64).round() as usize);
+    scaled(camera, exact, map).map(|scaled| (exact, scaled))
+}
