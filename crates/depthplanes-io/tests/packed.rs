@@ -182,7 +182,8 @@ fn colourised_pictures_are_named_as_before() {
 #[test]
 fn opacity_that_is_a_mask_is_noted() {
     let grey = |at: usize| (40 + at % W + at / W) as u8;
-    let opacities: [(fn(usize) -> u8, &str); 3] = [
+    type Opacity = fn(usize) -> u8;
+    let opacities: [(Opacity, &str); 3] = [
         (|_| 255, "the opacity channel is ignored"),
         (|at| if at % W < 30 { 0 } else { 255 }, "the opacity channel is ignored"),
         (|at| (4 * (at % W)) as u8, "the opacity channel is ignored; if it holds the low or high byte"),
