@@ -49,7 +49,7 @@ impl TableForm {
         (self.0.rows)(report)
     }
 
-    /// Begins the table: a hidden file beside `path`.
+    /// Begins the table, in a file of another name beside `path`.
     ///
     /// # Errors
     /// [`OutputError::Write`].
