@@ -147,10 +147,11 @@ stress: ## Run RUNS (100000) random maps through random methods, parameters and 
 	STRESS_RUNS=$(RUNS) STRESS_SEED=$(SEED) $(CARGO) test --package depthplanes-io --test stress -- --nocapture
 
 fuzz: $(CARGO_FUZZ) ## Fuzz every reader for FUZZ_SECONDS each (30)
+	$(CARGO) test --package depthplanes-io --test fuzz_seeds -- --ignored
 	@for target in fuzz/fuzz_targets/*.rs; do \
 		target=$$(basename "$$target" .rs); printf '\n== fuzzing %s for %s s\n' "$$target" $(FUZZ_SECONDS); \
 		RUSTC_BOOTSTRAP=1 PATH="$(CURDIR)/target/tools/bin:$$PATH" $(CARGO) fuzz run "$$target" -- \
-			-max_total_time=$(FUZZ_SECONDS) -rss_limit_mb=1024 -print_final_stats=1; done
+			-max_total_time=$(FUZZ_SECONDS) -rss_limit_mb=1024 -max_len=8192 -print_final_stats=1; done
 
 fmt: ## Format the code
 	@if scripts/component rustfmt; then $(CARGO) fmt --all && $(CARGO) fmt $(WASM); else exit 1; fi

@@ -1,7 +1,7 @@
 //! The answer: a label image of the input's shape and one record for each plane.
 
 use crate::camera::Hessian;
-use crate::noise::SensorNoise;
+use crate::noise::ExpectedNoise;
 
 /// What a method found in one map. A [`crate::Detector`] owns one and reuses its memory.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,23 +27,6 @@ pub struct Detection {
     pub curved: Option<Curved>,
     /// The noise that was expected of the map's pixels; `None` of methods that need none.
     pub noise: Option<ExpectedNoise>,
-}
-
-/// The noise that a method expected of a map's pixels, with all factors, so that a result can be made again.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct ExpectedNoise {
-    /// The part that differs from pixel to pixel: of depth in metres, of all else in map units.
-    pub white: SensorNoise,
-    /// Whether that part was estimated from the map, because nobody stated it.
-    pub white_is_estimated: bool,
-    /// The part that neighbouring pixels share, in the same units; `None` of methods that do not tell it apart.
-    pub smooth: Option<SensorNoise>,
-    /// Whether the smooth part was estimated from the map.
-    pub smooth_is_estimated: bool,
-    /// Lateral error of a pixel's direction, pixels, one standard deviation; 0 of methods that do not know it.
-    pub lateral_noise_px: f64,
 }
 
 /// Curved surfaces, which are no planes.

@@ -1,6 +1,7 @@
 //! What to type next: a `detect` command for a file that was looked at. Proposals only; nothing is applied.
 
 use crate::args::Reading;
+use crate::terminal::plain;
 use depthplanes::Measure;
 use depthplanes_io::Frame;
 use depthplanes_io::encoding::ENCODINGS;
@@ -14,7 +15,7 @@ pub(super) fn lines(name: &str, frame: &Frame, seen: &Summary, given: &Reading) 
     }
     let (words, encoding) = flags(frame, seen, given);
     let words: Vec<String> = [name.to_string()].into_iter().chain(words).map(|word| quoted(&word)).collect();
-    let mut lines = vec![format!("depthplanes detect {}", words.join(" "))];
+    let mut lines = vec![format!("depthplanes detect {}", plain(&words.join(" ")))];
     if frame.sensor.intrinsics.is_none() && frame.format != "scene" && encoding != "grey" {
         lines.extend(camera(frame, &encoding));
     }

@@ -40,7 +40,12 @@ impl Param {
     /// The values accepted, in words.
     pub fn accepted(&self) -> String {
         let (min, max) = (self.min, self.max);
-        let top = if max == f64::MAX { "up".to_string() } else { format!("to {max}") };
+        let top = match max {
+            f64::MAX => "up".to_string(),
+            // Zeros are not to be counted.
+            1e9.. if self.kind == ParamKind::Real => format!("to {max:e}"),
+            _ => format!("to {max}"),
+        };
         match self.kind {
             ParamKind::Real => format!("a number from {min} {top}"),
             ParamKind::Whole => format!("a whole number from {min} {top}"),

@@ -8,6 +8,7 @@
 mod enlarged;
 pub(crate) mod errors;
 mod estimate;
+mod expected;
 mod lanes;
 mod median;
 mod model;
@@ -22,6 +23,7 @@ pub use enlarged::{Enlargement, EnlargementFinder};
 pub(crate) use estimate::PADDED;
 pub use estimate::{Estimate, Estimator};
 pub(crate) use estimate::{noise_of_map, stated_noise};
+pub use expected::ExpectedNoise;
 pub use model::{NoiseModel, Patch};
 pub use rounding::{Rounding, RoundingFinder};
 pub use sensor_noise::SensorNoise;

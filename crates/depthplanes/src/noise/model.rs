@@ -2,12 +2,12 @@
 //!
 //! In: a sensor's noise, what the map's numbers mean, and their steps. Out: variances of q at q.
 
+use super::expected::ExpectedNoise;
 use super::lanes::{LANES, Lanes, lanes};
 use super::rounding::{Rounding, steady};
 use super::sensor_noise::SensorNoise;
 use super::space::Space;
 use crate::camera::Measure;
-use crate::detection::ExpectedNoise;
 
 /// Variance of one pixel's q: the sensor's own error and the rounding of its values.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -96,12 +96,12 @@ mod tests {
     #[test]
     fn folders_of_tum_and_7_scenes_and_ones_own_are_read_as_they_are_meant() {
         let own = folder("own", &["depth7.png"], &[("camera.txt", "500 500 1 0.5")]);
-        assert_eq!(read(&own), (0.001, 2, true));
+        assert_eq!(read(&own), (0.001, 1, true));
         let scenes = folder("7-scenes", &["frame-000000.depth.png"], &[]);
         assert_eq!(read(&scenes), (0.001, 1, false));
         let tum = folder("tum", &["depth/1341.png"], &[("depth.txt", "# depth maps\n")]);
-        assert_eq!(read(&tum), (0.0002, 2, false));
+        assert_eq!(read(&tum), (0.0002, 1, false));
         let plain = folder("plain", &["depth/1.png"], &[]);
-        assert_eq!(read(&plain), (0.001, 2, false));
+        assert_eq!(read(&plain), (0.001, 1, false));
     }
 }

@@ -55,8 +55,10 @@ mod tests {
     fn frames_come_in_their_order_and_the_camera_is_that_of_the_folder() {
         let folder = std::env::temp_dir().join(format!("depthplanes-video-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
+        let mut pixels = vec![5000; 640 * 480];
+        pixels[0] = 65_535;
         for name in ["frame-10.depth.png", "frame-9.depth.png", "other.depth.png"] {
-            std::fs::write(folder.join(name), grey16_png(2, 1, &[5000, 65535])).unwrap();
+            std::fs::write(folder.join(name), grey16_png(640, 480, &pixels)).unwrap();
         }
         let read = || {
             let items = items(&folder, "7scenes").unwrap();
@@ -66,9 +68,9 @@ mod tests {
             let valid = depthplanes::with_view!(frame.view().unwrap(), view => view.valid_pixels());
             (valid, frame.sensor.intrinsics.unwrap().fx)
         };
-        assert_eq!(read(), (1, 585.0));
-        std::fs::write(folder.join("camera-intrinsics.txt"), "500 0 1\n0 500 0.5\n0 0 1\n").unwrap();
-        assert_eq!(read(), (1, 500.0));
+        assert_eq!(read(), (640 * 480 - 1, 585.0));
+        std::fs::write(folder.join("camera-intrinsics.txt"), "500 0 320\n0 500 240\n0 0 1\n").unwrap();
+        assert_eq!(read(), (640 * 480 - 1, 500.0));
         std::fs::remove_dir_all(folder).unwrap();
     }
 }
