@@ -2,7 +2,7 @@
 
 use depthplanes::Measure;
 
-use super::Probe;
+use super::probe::Probe;
 use crate::frame::Frame;
 
 /// A camera for a PFM file that is taken for disparity by its format alone: without a rig the camera says nothing.

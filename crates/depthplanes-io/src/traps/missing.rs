@@ -2,7 +2,7 @@
 
 use depthplanes::Measure;
 
-use super::{FEW, Probe, is_small, percent};
+use super::probe::{FEW, Probe, is_small, percent};
 use crate::frame::{Frame, Pixels};
 
 /// From this many metres on no camera measures depth, whatever the unit: the largest value that a file of millimetres or

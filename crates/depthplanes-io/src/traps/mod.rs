@@ -20,11 +20,6 @@ use crate::frame::Frame;
 
 /// Pixels that are looked at: enough for shares of half a percent, cheap enough for every frame.
 const PIXELS: usize = 1 << 12;
-/// Fewer valid pixels say nothing.
-const FEW: usize = 64;
-/// Maps of fewer pixels are examples written by hand, of few values and large steps; no camera makes them.
-const SMALL: usize = 4096;
-
 /// A look at a map; a note if it fell into the trap.
 type Look = fn(&Frame, &Probe) -> Option<String>;
 
@@ -47,12 +42,4 @@ const TRAPS: &[&[Look]] = &[
 pub(crate) fn traps(frame: &Frame) -> Vec<String> {
     let Ok(probe) = Probe::of(frame, PIXELS) else { return Vec::new() };
     TRAPS.iter().filter_map(|row| row.iter().find_map(|look| look(frame, &probe))).collect()
-}
-
-fn is_small(frame: &Frame) -> bool {
-    frame.pixels.len() < SMALL
-}
-
-fn percent(share: f64) -> String {
-    format!("{:.0} %", (100.0 * share).max(1.0))
 }

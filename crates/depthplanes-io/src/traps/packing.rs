@@ -2,7 +2,7 @@
 
 use depthplanes::Measure;
 
-use super::Probe;
+use super::probe::{FEW, Probe};
 use crate::frame::{Frame, Pixels};
 
 /// Bytes in the wrong order.
@@ -13,7 +13,7 @@ pub(super) fn swapped(frame: &Frame, probe: &Probe) -> Option<String> {
         steps.sum::<f64>() / probe.pairs.len() as f64
     };
     let (stored, swapped) = (mean_step(|value| value), mean_step(u16::swap_bytes));
-    (probe.pairs.len() >= super::FEW && stored > 256.0 && swapped * 8.0 < stored)
+    (probe.pairs.len() >= FEW && stored > 256.0 && swapped * 8.0 < stored)
         .then(|| "neighbours differ far less with their bytes swapped: try --swap-bytes".to_string())
 }
 
@@ -22,7 +22,7 @@ pub(super) fn grey_levels(frame: &Frame, probe: &Probe) -> Option<String> {
     let Pixels::U16(_) = frame.pixels else { return None };
     let (largest, _) = probe.largest()?;
     let is_depth = matches!(frame.sensor.measure, Measure::Depth { .. });
-    (is_depth && largest < 256.0 && probe.valid.len() >= super::FEW)
+    (is_depth && largest < 256.0 && probe.valid.len() >= FEW)
         .then(|| format!("16 bits but no value above {largest}: grey levels or labels? try --encoding grey"))
 }
 
@@ -35,7 +35,7 @@ pub(super) fn multiples(frame: &Frame, probe: &Probe) -> Option<String> {
     // Not quite all: player bits and distances above 8 m leave other remainders.
     let multiples_of = |of: f64| {
         let multiples = probe.valid.iter().filter(|value| *value % of == 0.0).count();
-        probe.valid.len() >= super::FEW && multiples * 100 >= probe.valid.len() * 95
+        probe.valid.len() >= FEW && multiples * 100 >= probe.valid.len() * 95
     };
     if multiples_of(8.0) {
         let packed = "the values are multiples of 8, as Kinect SDK 1 and SUN RGB-D pack them";

@@ -2,7 +2,7 @@
 
 use depthplanes::Measure;
 
-use super::{Probe, is_small};
+use super::probe::{FEW, Probe, is_small};
 use crate::frame::{Frame, Pixels};
 
 /// Few values, each alike over whole regions, that jump at borders: a label image.
@@ -19,7 +19,7 @@ pub(super) fn labels(frame: &Frame, probe: &Probe) -> Option<String> {
     let jumps = changes.iter().filter(|&&levels| levels > 1).count();
     // Surfaces of few levels change by one level at a time; labels of neighbours have nothing to do with each other.
     let is_alike = changes.len() * 5 < probe.pairs.len();
-    let is_labels = probe.pairs.len() >= super::FEW && is_alike && (levels.len() == 2 || jumps * 3 > changes.len());
+    let is_labels = probe.pairs.len() >= FEW && is_alike && (levels.len() == 2 || jumps * 3 > changes.len());
     is_labels.then(|| {
         let count = levels.len();
         format!(

@@ -5,6 +5,11 @@ use depthplanes::{AnyView, DepthView, Pixel, with_view};
 use crate::error::Result;
 use crate::frame::{Frame, Pixels};
 
+/// Fewer valid pixels say nothing.
+pub(super) const FEW: usize = 64;
+/// Maps of fewer pixels are examples written by hand, of few values and large steps; no camera makes them.
+pub(super) const SMALL: usize = 4096;
+
 /// Evenly spaced pixels of a map.
 pub(crate) struct Probe {
     /// Pixels looked at.
@@ -75,4 +80,14 @@ fn is_coprime(mut a: usize, mut b: usize) -> bool {
         (a, b) = (b, a % b);
     }
     a == 1
+}
+
+/// Whether a map was written by hand.
+pub(super) fn is_small(frame: &Frame) -> bool {
+    frame.pixels.len() < SMALL
+}
+
+/// A share for people, at least 1 %.
+pub(super) fn percent(share: f64) -> String {
+    format!("{:.0} %", (100.0 * share).max(1.0))
 }

@@ -2,7 +2,7 @@
 
 use depthplanes::Measure;
 
-use super::{FEW, Probe};
+use super::probe::{FEW, Probe};
 use crate::frame::Frame;
 
 /// Median depths that a camera may have: a close-up, and the far side of a valley.
