@@ -1,5 +1,6 @@
 //! `depthplanes detect`: maps in, planes out as a table, as JSON or as files.
 
+mod done;
 mod table;
 mod tally;
 mod targets;
@@ -14,6 +15,7 @@ use crate::{load, pool, show};
 use depthplanes::noise::SensorNoise;
 use depthplanes_io::outputs::{self, OUTPUTS, Output, Report, TableForm};
 use depthplanes_io::{ReadOptions, doubts, memory, read_noise_table};
+use done::Done;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write;
 use std::path::PathBuf;
@@ -63,19 +65,6 @@ pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     }
     out.write_all(hint.as_bytes())?;
     tally.outcome(inputs.len())
-}
-
-/// What one input came to.
-struct Done {
-    text: String,
-    notes: Vec<String>,
-    /// An output that goes to standard output; the text goes to standard error then.
-    bytes: Option<Vec<u8>>,
-    /// What it adds to the table of all inputs.
-    rows: String,
-    planes: usize,
-    /// What a camera would add; said once for many inputs.
-    hint: String,
 }
 
 /// What is done with each input.

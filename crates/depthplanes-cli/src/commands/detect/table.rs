@@ -1,6 +1,6 @@
 //! One table of the planes of all inputs.
 
-use super::Done;
+use super::done::Done;
 use crate::args::Detect;
 use crate::failure::Outcome;
 use depthplanes_io::outputs::{TableFile, TableForm};

@@ -1,6 +1,6 @@
 //! What inputs came to, on the terminal, and how many of them failed.
 
-use super::Done;
+use super::done::Done;
 use crate::failure::{Failure, Outcome, note, say};
 use std::io::Write;
 
