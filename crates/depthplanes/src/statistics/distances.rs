@@ -148,7 +148,8 @@ impl Distances {
 /// out of what numbers can hold.
 fn is_finite(metric: &MetricPlane) -> bool {
     let MetricPlane { plane, rms_m, centroid_m, covariance, .. } = metric;
-    let numbers =
-        plane.normal.iter().chain([&plane.distance, rms_m]).chain(centroid_m).chain(covariance.iter().flatten());
-    numbers.into_iter().all(|number| number.is_finite())
+    // 0 times a number is 0, but of an infinity or of none it is none; a sum needs no branch for each number.
+    let zeros = |numbers: &[f64]| numbers.iter().map(|number| 0.0 * number).sum::<f64>();
+    let of_plane = zeros(&plane.normal) + 0.0 * plane.distance + 0.0 * rms_m;
+    of_plane + zeros(centroid_m) + zeros(covariance.as_flattened()) == 0.0
 }

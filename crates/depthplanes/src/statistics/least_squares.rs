@@ -6,7 +6,6 @@
 //! two sums is fitting the union.
 
 use crate::camera::{Hessian, Intrinsics, ray_coefficients};
-use std::cmp::Ordering;
 
 /// Sums over points (u, v, q) relative to an origin of the owner's choice.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -347,12 +346,10 @@ fn propagate<const N: usize>(jacobian: &[[f64; 3]; N], covariance: &[[f64; 3]; 3
     let product = |i: usize, j: usize| -> f64 {
         (0..3).map(|k| (0..3).map(|l| jacobian[i][k] * covariance[k][l] * jacobian[j][l]).sum::<f64>()).sum()
     };
-    let entry = |i: usize, j: usize| match i.cmp(&j) {
-        Ordering::Equal => product(i, i).max(0.0),
-        Ordering::Less => product(i, j),
-        Ordering::Greater => product(j, i),
-    };
-    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
+    let entry = |i: usize, j: usize| if i <= j { product(i, j) } else { product(j, i) };
+    let mut all: [[f64; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
+    (0..N).for_each(|i| all[i][i] = all[i][i].max(0.0));
+    all
 }
 
 /// Covariance of (nx, ny, nz, distance) of the plane whose inverse depth (1/m) has the coefficients `abc` with that
