@@ -136,7 +136,7 @@ results: ## Write docs/results.md and the README's table of methods anew: METHOD
 	rm -rf out/results
 	target/release/depthplanes eval $(SETS) $(MORE_SETS) --data '$(DATA)' --methods $(METHODS) --repeat 1 --report out/results
 	scripts/results out/results/report.md docs/results.md
-	DEPTHPLANES_GOLDEN=update $(CARGO) test --package depthplanes-cli --test docs the_tables_of_the_readme
+	DEPTHPLANES_GOLDEN=update $(CARGO) test --package depthplanes-cli --test docs the_tables_of_formats
 	git status --short
 
 golden: ## Write golden files, the outputs shown in the docs and their pictures anew; look at the difference

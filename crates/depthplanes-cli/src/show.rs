@@ -4,6 +4,7 @@ use crate::table::{Align, aligned, row};
 use crate::terminal::plain;
 use depthplanes::detection::Curved;
 use depthplanes::{Detection, Measure, Plane};
+use depthplanes_io::Frame;
 use depthplanes_io::outputs::{Report, Times, depth_m, noise_in_words};
 
 /// One line on the frame, one on the method and what it found, one on the time if it was measured.
@@ -17,7 +18,7 @@ pub(crate) fn summary(report: &Report<'_>) -> String {
         frame.height,
         frame.format,
         frame.encoding,
-        meaning(frame.sensor.measure)
+        meaning(frame)
     );
     let planes = match detection.planes.len() {
         1 => "1 plane".into(),
@@ -46,7 +47,9 @@ pub(crate) fn camera_hint(report: &Report<'_>, preset: bool) -> String {
     let sensor = report.frame.sensor;
     let adds = "adds distance, normal and area in metres";
     match sensor.measure {
-        _ if sensor.intrinsics.is_some() || report.frame.encoding == "grey" => String::new(),
+        // Neither grey levels nor relative depth have metres, whatever the camera.
+        Measure::Disparity if ["grey", "inverse-depth"].contains(&report.frame.encoding) => String::new(),
+        _ if sensor.intrinsics.is_some() => String::new(),
         Measure::Disparity => {
             format!("no camera: --baseline METRES with --intrinsics FX,FY,CX,CY or --camera FILE {adds}\n")
         }
@@ -65,10 +68,12 @@ fn surfaces(curved: &Curved, detection: &Detection) -> String {
     }
 }
 
-fn meaning(measure: Measure) -> String {
-    match measure {
+fn meaning(frame: &Frame) -> String {
+    match frame.sensor.measure {
         Measure::Depth { metres } => format!("depth, 1 unit = {}", length(metres)),
         Measure::InverseDepth { .. } => "inverse depth".into(),
+        Measure::Disparity if frame.encoding == "grey" => "no unit".into(),
+        Measure::Disparity if frame.encoding == "inverse-depth" => "inverse depth without a scale".into(),
         Measure::Disparity => "disparity of an unknown rig".into(),
     }
 }

@@ -12,6 +12,7 @@ use depthplanes::scene::{SCENES, SENSORS};
 use depthplanes_io::encoding::ENCODINGS;
 use depthplanes_io::formats::FORMATS;
 use depthplanes_io::outputs::OUTPUTS;
+use depthplanes_io::presets::SENSOR_PRESETS;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use support::{Bench, Ran};
@@ -70,12 +71,16 @@ fn update() -> bool {
 }
 
 fn run_document(path: &Path) {
-    let text = std::fs::read_to_string(path).unwrap();
     let bench = Bench::new(&format!("docs_{}", path.file_stem().unwrap().display()));
+    run_in(&bench, path);
+}
+
+fn run_in(bench: &Bench, path: &Path) {
+    let text = std::fs::read_to_string(path).unwrap();
     let mut lines: Vec<String> = text.lines().map(String::from).collect();
     let mut outputs = Vec::new();
     for step in steps(&text) {
-        let ran = shell(&bench, &step.command);
+        let ran = shell(bench, &step.command);
         let fails = step.command.contains("# fails");
         assert_eq!(ran.code == Some(0), !fails, "{}: {ran:?}", step.command);
         let shown = if fails { &ran.err } else { &ran.out };
@@ -96,7 +101,7 @@ fn run_document(path: &Path) {
 }
 
 /// Documents whose commands are run.
-const WITH_COMMANDS: [&str; 15] = [
+const WITH_COMMANDS: [&str; 17] = [
     "docs/cli.md",
     "docs/ngaf.md",
     "docs/planar.md",
@@ -111,6 +116,8 @@ const WITH_COMMANDS: [&str; 15] = [
     "docs/explain.md",
     "docs/noise.md",
     "docs/outlines.md",
+    "docs/methods.md",
+    "docs/formats.md",
     "README.md",
 ];
 
@@ -122,8 +129,30 @@ fn the_commands_of_the_docs_print_what_the_docs_say() {
     }
 }
 
+/// The frames of the page on the first hour, and where they are among the recorded ones.
+const FIRST_HOUR: [(&str, &str); 7] = [
+    ("kinect.png", "gt_real/lpvo_hall_125.depth.png"),
+    ("realsense.png", "realsense_polylidar/depth/00000000_1580908150203.png"),
+    ("realsense.json", "realsense_polylidar/camera_intrinsic_rgb_424.json"),
+    ("phone.png", "reports/other_size_256x192.png"),
+    ("phone.csv", "reports/other_size_1920x1440.csv"),
+    ("image.compressedDepth", "reports/depth_32FC1.compressedDepth"),
+    ("network.png", "reports/relative_inverse16.png"),
+];
+
 #[test]
-fn the_tables_of_the_readme_are_the_libraries_tables() {
+fn the_first_hour_goes_as_its_page_says() {
+    let Some(data) = support::data() else { return };
+    let _alone = DOCUMENTS.lock();
+    let bench = Bench::new("docs_first_hour");
+    for (name, file) in FIRST_HOUR {
+        bench.write(name, &std::fs::read(data.join(file)).unwrap());
+    }
+    run_in(&bench, &root().join("docs/first-hour.md"));
+}
+
+#[test]
+fn the_tables_of_formats_and_methods_are_the_libraries_tables() {
     let _alone = DOCUMENTS.lock();
     let formats = FORMATS.iter().filter(|format| format.name != "exr").map(|format| {
         let names: Vec<String> = format.extensions.iter().map(|extension| format!("`.{extension}`")).collect();
@@ -133,14 +162,58 @@ fn the_tables_of_the_readme_are_the_libraries_tables() {
         ENCODINGS.iter().map(|encoding| format!("| `{}` | {} | {} |", encoding.name, encoding.unit, encoding.about));
     let outputs =
         OUTPUTS.iter().map(|output| format!("| `--{}` | {} | {} |", output.name, output.extensions(), output.about));
-    let path = root().join("README.md");
+    let path = root().join("docs/formats.md");
     let text = std::fs::read_to_string(&path).unwrap();
     let filled = fill(&text, "formats", "| format | names | about |", formats);
     let filled = fill(&filled, "encodings", "| encoding | unit | about |", encodings);
     let filled = fill(&filled, "outputs", "| flag | file | about |", outputs);
-    let [heading, rows] = results();
-    let filled = fill(&filled, "methods", &heading[0], rows.into_iter());
     written_or_equal(&path, &text, &filled);
+
+    let path = root().join("docs/methods.md");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let [heading, rows] = results();
+    written_or_equal(&path, &text, &fill(&text, "methods", &heading[0], rows.iter().cloned()));
+
+    let path = root().join("README.md");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let short = rows.iter().map(|row| {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        format!("| {} | {} | {} |", cells[1], cells[2], cells[cells.len() - 2])
+    });
+    let filled = fill(&text, "real", "| method | surfaces whole | ms for a megapixel |", short);
+    let latency = real_planar();
+    assert!(filled.contains(&latency), "the README's latency is not that of docs/results.md: {latency}");
+    written_or_equal(&path, &text, &filled);
+}
+
+/// The README's figures of `planar` on frames of real cameras, as docs/results.md has them.
+fn real_planar() -> String {
+    let text = std::fs::read_to_string(root().join("docs/results.md")).unwrap();
+    let section = text.split("\n## ").find(|section| section.starts_with("real\n")).expect("the set `real`");
+    let cells = |line: &str| line.split('|').map(|cell| cell.trim().to_string()).collect::<Vec<_>>();
+    let line = |start: &str| cells(section.lines().find(|line| line.starts_with(start)).expect("a line of the table"));
+    let (head, row) = (line("| method"), line("| planar"));
+    let of = |name: &str| &row[head.iter().position(|cell| cell == name).expect("a column")];
+    format!("it takes {} ms a frame ({} frames", of("ms"), of("maps"))
+}
+
+#[test]
+fn what_the_page_of_cameras_says_to_type_exists() {
+    let page = std::fs::read_to_string(root().join("docs/my-camera.md")).unwrap();
+    let bench = Bench::new("docs_my_camera");
+    let help = bench.run(&["detect", "--help"]).ok();
+    let words: Vec<&str> = page.split(|c: char| c.is_whitespace() || "`()|,;".contains(c)).collect();
+    let mut flags = 0;
+    for pair in words.windows(2).filter(|pair| pair[0].starts_with("--")) {
+        let known = match pair[0] {
+            "--encoding" => pair[1].is_empty() || ENCODINGS.iter().any(|encoding| encoding.name == pair[1]),
+            "--preset" => pair[1].is_empty() || SENSOR_PRESETS.iter().any(|preset| preset.name == pair[1]),
+            flag => help.contains(flag),
+        };
+        assert!(known, "{} {}", pair[0], pair[1]);
+        flags += 1;
+    }
+    assert!(flags > 40, "{flags} flags");
 }
 
 #[test]
@@ -213,7 +286,19 @@ fn fill(text: &str, marker: &str, heading: &str, rows: impl Iterator<Item = Stri
 #[test]
 fn links_of_the_docs_lead_to_files() {
     let mut links = 0;
-    let others = ["ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/metrics.md", "docs/planes-schema.md"];
+    let others = [
+        "docs/first-hour.md",
+        "docs/my-camera.md",
+        "docs/cameras.md",
+        "docs/install.md",
+        "docs/library.md",
+        "docs/speed.md",
+        "ARCHITECTURE.md",
+        "CONTRIBUTING.md",
+        "CHANGELOG.md",
+        "docs/metrics.md",
+        "docs/planes-schema.md",
+    ];
     for document in WITH_COMMANDS.into_iter().chain(others) {
         let path = root().join(document);
         let text = std::fs::read_to_string(&path).unwrap();

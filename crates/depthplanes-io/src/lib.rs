@@ -32,7 +32,8 @@ pub use labels::{LabelImage, read_labels};
 pub use noise_table::read_noise_table;
 pub use read::{ReadOptions, decode, read, read_stream};
 
-/// The README's program is a documentation test.
+/// The programs of the README and of the page on the library are documentation tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
-struct Readme;
+#[doc = include_str!("../../../docs/library.md")]
+struct Pages;
