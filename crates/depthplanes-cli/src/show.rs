@@ -53,7 +53,9 @@ pub(crate) fn camera_hint(report: &Report<'_>, preset: bool) -> String {
         Measure::Disparity => {
             format!("no camera: --baseline METRES with --intrinsics FX,FY,CX,CY or --camera FILE {adds}\n")
         }
-        _ if preset => format!("no camera: --intrinsics FX,FY,CX,CY or --camera FILE {adds}\n"),
+        _ if preset || matches!(sensor.measure, Measure::InverseDepth { .. }) => {
+            format!("no camera: --intrinsics FX,FY,CX,CY or --camera FILE {adds}\n")
+        }
         _ => format!("no camera: --preset SENSOR, --intrinsics FX,FY,CX,CY or --camera FILE {adds}\n"),
     }
 }

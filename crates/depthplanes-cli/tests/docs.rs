@@ -201,7 +201,7 @@ fn real_planar() -> String {
 fn what_the_page_of_cameras_says_to_type_exists() {
     let page = std::fs::read_to_string(root().join("docs/my-camera.md")).unwrap();
     let bench = Bench::new("docs_my_camera");
-    let help = bench.run(&["detect", "--help"]).ok();
+    let help = bench.run(&["detect", "--help"]).ok() + &bench.run(&["explain", "--help"]).ok();
     let words: Vec<&str> = page.split(|c: char| c.is_whitespace() || "`()|,;".contains(c)).collect();
     let mut flags = 0;
     for pair in words.windows(2).filter(|pair| pair[0].starts_with("--") && !pair[0].ends_with('-')) {

@@ -35,8 +35,16 @@ pub(crate) fn choose(
         return Ok(Choice { encoding, why: "the file's header states it".into(), note: None });
     }
     let Some(preset) = preset else {
-        let (encoding, why) = encoding::likely(&image.pixels, image.width, format, disparity);
-        return Ok(Choice { encoding, why, note: None });
+        let (encoding, why) = match image.sample {
+            "int16" if disparity => (encoding::by_name("opencv")?, "OpenCV's matchers write signed 16 bits".into()),
+            _ => encoding::likely(&image.pixels, image.width, format, disparity),
+        };
+        let is_doubtful = disparity && ["kitti", "opencv"].contains(&encoding.name);
+        let note = format!(
+            "disparity of 16 bits is taken to be in {} (`{}`), since {why}; state --encoding or --scale if it is not",
+            encoding.unit, encoding.name
+        );
+        return Ok(Choice { encoding, why, note: is_doubtful.then_some(note) });
     };
     let of_preset = encoding::by_name(preset.encoding)?;
     if suits(of_preset, image, format) {

@@ -154,6 +154,16 @@ pub const ENCODINGS: &[Encoding] = &[
         ..DISPARITY
     },
     Encoding {
+        name: "opencv",
+        aliases: &["sgbm"],
+        about: "disparity in 1/16 pixel: OpenCV's matchers; -16 or 65520 = missing",
+        unit: "1/16 px",
+        scale: "map units per pixel of disparity, 16",
+        missing: Some(65_520.0),
+        apply: |image, given| disparity(image, given, given.scale.unwrap_or(16.0)),
+        ..DISPARITY
+    },
+    Encoding {
         name: "middlebury",
         aliases: &["eth3d"],
         about: "Middlebury disparity: float pixels (PFM), or integers with the data set's scale",
@@ -272,6 +282,11 @@ pub fn likely(pixels: &Pixels, width: usize, format: &str, disparity: bool) -> (
         Pixels::F32(_) if format == "pfm" => ("middlebury", "PFM files hold disparity in pixels".to_string()),
         Pixels::F32(_) if disparity => ("disparity", "float disparity is in pixels".to_string()),
         Pixels::U8(_) if disparity => ("middlebury", "8-bit disparity has a scale of its data set".to_string()),
+        Pixels::U16(values)
+            if disparity && values.iter().filter(|&&value| value == 65_520).count() * 200 > values.len() =>
+        {
+            ("opencv", "65520 is the -16 of OpenCV's matchers".to_string())
+        }
         Pixels::U16(values) if disparity => match values.iter().max() {
             Some(largest) if *largest > 2048 => ("kitti", format!("{largest} pixels of disparity would be too many")),
             _ => ("disparity", "the values are small enough to be pixels".to_string()),

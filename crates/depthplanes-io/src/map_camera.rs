@@ -127,13 +127,13 @@ fn scaled_to(camera: &Intrinsics, size: Option<Size>, map: Size) -> Result<(Intr
     }
 }
 
-/// The camera of a picture for the same picture with other pixels, if the sides have the same ratio to within a pixel.
+/// The camera of a picture for the same picture with other pixels, if the sides have the same ratio to within 3 %.
 /// Pixel centres are at integers.
 fn scaled(camera: &Intrinsics, from: Size, to: Size) -> Option<Intrinsics> {
     let [from, to] = [from, to].map(|(width, height)| [width, height].map(|side| side.max(1) as f64));
     let scale = [to[0] / from[0], to[1] / from[1]];
-    let off = [(from[1] * scale[0] - to[1]).abs(), (from[0] * scale[1] - to[0]).abs()];
-    let is_alike = off[0].min(off[1]) <= scale[0].max(1.0) && (scale[0] / scale[1] - 1.0).abs() < 0.03;
+    // Networks resize to multiples of 14 or 32 pixels.
+    let is_alike = (scale[0] / scale[1] - 1.0).abs() < 0.03;
     let centre = |c: f64, scale: f64| (c + 0.5) * scale - 0.5;
     is_alike.then(|| Intrinsics {
         fx: camera.fx * scale[0],
@@ -154,8 +154,13 @@ fn other_size(camera: &Intrinsics, (width, height): Size, map: Size) -> Error {
     let (w, h) = map;
     let accepted = match scaled(camera, (width, height), map) {
         Some(scaled) => format!(
-            "the camera of this map, which has {w} x {h} pixels; scaled it is {}, and --camera-size {width}x{height} scales it",
+            "the camera of this map, which has {w} x {h} pixels; scaled it is {}, and --camera-size {width}x{height} scales it; if the \
+             map is not resized but a part of the picture, take the part's corner off the principal point",
             flag(&scaled)
+        ),
+        None if scaled(camera, (height, width), map).is_some() => format!(
+            "the camera of this map, which has {w} x {h} pixels: the picture was turned by 90 degrees; turn the map back, or \
+             exchange fx and fy, and put the principal point where it is in the turned picture"
         ),
         None => format!(
             "the camera of this map, which has {w} x {h} pixels and another shape: if it is a part of the picture, take the part's \
@@ -186,6 +191,11 @@ fn checked(camera: &Intrinsics, map: Size, is_size_stated: bool, lens: Option<&D
     let (w, h) = map;
     let sides = [w as f64, h as f64];
     let off = |at: [f64; 2]| [0, 1].map(|i| (at[i] - 0.5 * (sides[i] - 1.0)).abs() / sides[i]);
+    if [fx, fy, cx, cy].iter().all(|part| (0.0..2.0).contains(part)) {
+        let own = Intrinsics { fx: fx * sides[0], fy: fy * sides[1], cx: cx * sides[0] - 0.5, cy: cy * sides[1] - 0.5 };
+        let accepted = format!("pixels; if these are parts of the picture's width and height, {}", flag(&own));
+        return Err(Error::parameter("camera", format_args!("{fx},{fy},{cx},{cy}"), accepted));
+    }
     let is_middle = |at: [f64; 2]| off(at).iter().all(|&off| off <= FAR);
     let is_outside = [cx, cy].iter().zip(sides).any(|(&c, side)| c < -0.5 || c > side - 0.5);
     let mut notes = Vec::new();
@@ -230,6 +240,11 @@ fn checked(camera: &Intrinsics, map: Size, is_size_stated: bool, lens: Option<&D
         notes.push(format!(
             "the principal point {cx},{cy} lies far from the middle of {w} x {h} pixels: right if the map is a part of a larger picture, \
              else check --intrinsics, --camera and --camera-size"
+        ));
+    }
+    if !(0.7..1.4).contains(&(fx / fy).abs()) {
+        notes.push(format!(
+            "focal lengths of {fx} and {fy} pixels mean pixels that are far from square: is the order fx,fy,cx,cy?"
         ));
     }
     if lens.is_none_or(|lens| lens.model() != DistortionModel::KannalaBrandt) {

@@ -127,6 +127,9 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
     }
     let camera = camera(options, preset, &mut image)?;
     let is_stated = why == "stated" || why == "preset";
+    if options.stereo.is_some() && !encoding.disparity {
+        image.warnings.push(format!("the stereo rig is not used: the encoding `{}` is no disparity", encoding.name));
+    }
     let scale =
         scale(options, encoding)?.or_else(|| scale_of_camera_file(&camera, encoding.name, is_stated, &mut image));
     let stereo = options.stereo.or(camera.stereo);

@@ -100,11 +100,14 @@ pub(super) fn with_short_page(command: Command) -> Command {
 }
 
 fn more(command: &str) -> String {
+    let has_method = !["inspect", "noise"].contains(&command);
+    let every = if has_method { "every flag, and all parameters of the default method" } else { "every flag" };
     let rows = [
-        (format!("{command} --help"), "every flag, and all parameters of the default method"),
+        (format!("{command} --help"), every),
         ("params METHOD".into(), "the parameters of another method, which are flags as well"),
         ("presets".into(), "the sensors; `encodings`, `formats` and `methods` list the others"),
     ];
+    let rows: Vec<_> = rows.into_iter().filter(|(words, _)| has_method || words != "params METHOD").collect();
     let width = rows.iter().map(|(words, _)| words.len()).max().unwrap_or(0);
     let lines = rows.iter().map(|(words, about)| format!("\n  depthplanes {words:<width$}  {about}"));
     format!("More:{}", lines.collect::<String>())

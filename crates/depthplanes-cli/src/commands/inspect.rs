@@ -3,10 +3,13 @@
 use super::next;
 use crate::args::{Inputs, Reading};
 use crate::failure::{Failure, Outcome};
+use crate::run::{Recipe, Runner};
 use crate::terminal::plain;
 use crate::{inputs, load};
+use depthplanes::methods;
 use depthplanes_io::inspect::{Summary, summary};
-use depthplanes_io::{Frame, ReadOptions};
+use depthplanes_io::outputs::Report;
+use depthplanes_io::{Frame, ReadOptions, doubts};
 use serde_json::json;
 use std::io::Write;
 
@@ -39,8 +42,29 @@ pub(super) fn run(wanted: &Inputs, reading: &Reading, as_json: bool, out: &mut d
 
 fn look(input: &inputs::Input, options: &ReadOptions) -> Outcome<(Frame, Summary)> {
     let frame = load::frame(input, options)?;
-    let seen = summary(&frame, BARS)?;
+    let mut seen = summary(&frame, BARS)?;
+    if frame.format != "scene" {
+        seen.warnings.extend(doubts_of_planes(&frame)?);
+    }
     Ok((frame, seen))
+}
+
+/// What planes found with the defaults say of how the frame is read.
+fn doubts_of_planes(frame: &Frame) -> Outcome<Vec<String>> {
+    let recipe = Recipe::new(methods::default(), &[], 1)?;
+    let found = Runner::new(&recipe).detect(frame, 0)?;
+    Ok(doubts(&Report {
+        source: "",
+        frame,
+        method: recipe.method,
+        parameters: &recipe.values,
+        detection: &found.detection,
+        coplanar: None,
+        outlines: None,
+        times: None,
+        legend: false,
+        notes: &[],
+    }))
 }
 
 fn record(name: &str, seen: &Summary) -> serde_json::Value {

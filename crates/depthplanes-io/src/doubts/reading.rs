@@ -49,15 +49,18 @@ pub(super) fn better(report: &Report<'_>) -> Option<String> {
     let nearer_below = is_larger_below(frame)?;
     match frame.sensor.measure {
         Measure::Depth { .. } => {
-            if let Some(score) = as_ray_distance(frame).filter(|score| score.beats(&as_read)) {
-                return Some(told(score, "they are distances along the rays: try --ray-distance"));
-            }
-            let is_guess = frame.provenance.encoding != "stated" && frame.provenance.preset.is_none();
+            let along_rays = as_ray_distance(frame).filter(|score| score.beats(&as_read));
             // Most pictures have what is near below. Where large values are, they are near if they are inverse depth.
-            let score = (is_guess && nearer_below).then(|| with(frame, Measure::Disparity)).flatten()?;
-            score.beats(&as_read).then(|| {
-                told(score, "they are inverse depth, large values near: try --encoding inverse-depth or --disparity")
-            })
+            let inverse = nearer_below.then(|| with(frame, Measure::Disparity)).flatten();
+            let inverse = inverse.filter(|score| score.beats(&as_read));
+            match (along_rays, inverse) {
+                (along, Some(score)) if along.is_none_or(|along| score.together > along.together) => Some(told(
+                    score,
+                    "they are inverse depth, large values near: try --encoding inverse-depth or --disparity",
+                )),
+                (Some(score), _) => Some(told(score, "they are distances along the rays: try --ray-distance")),
+                _ => None,
+            }
         }
         Measure::Disparity if frame.format == "pfm" && frame.provenance.encoding != "stated" && !nearer_below => {
             let score = with(frame, Measure::Depth { metres: 1.0 })?;

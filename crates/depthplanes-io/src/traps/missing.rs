@@ -92,6 +92,17 @@ fn is_round(metres: f64) -> bool {
     (digits - digits.round()).abs() < 1e-5
 }
 
+/// Values below 0, which count as missing.
+pub(super) fn negative(_: &Frame, probe: &Probe) -> Option<String> {
+    let share = probe.negative as f64 / probe.pixels as f64;
+    let what = match share {
+        0.95.. => "a depth or a disparity with the other sign? turn it round before it is saved",
+        0.05.. => "coordinates of another frame than the camera's, or a program's value for nothing?",
+        _ => return None,
+    };
+    Some(format!("{} of the pixels are below 0 and count as missing: {what}", percent(share)))
+}
+
 /// Most of the map is missing.
 pub(super) fn mostly(_: &Frame, probe: &Probe) -> Option<String> {
     let share = probe.missing_share();

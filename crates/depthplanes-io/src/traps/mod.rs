@@ -25,11 +25,13 @@ type Look = fn(&Frame, &Probe) -> Option<String>;
 
 /// All traps. Of a row the first that is found is told, since it explains the others.
 const TRAPS: &[&[Look]] = &[
-    &[missing::far_clip, missing::mostly],
+    &[missing::negative, missing::far_clip, missing::mostly],
     &[
         packing::swapped,
+        packing::kinect_raw,
         picture::labels,
         picture::eight_bits,
+        picture::grows_below,
         picture::whole_range,
         packing::grey_levels,
         packing::multiples,

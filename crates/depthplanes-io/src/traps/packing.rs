@@ -17,6 +17,19 @@ pub(super) fn swapped(frame: &Frame, probe: &Probe) -> Option<String> {
         .then(|| "neighbours differ far less with their bytes swapped: try --swap-bytes".to_string())
 }
 
+/// A Kinect's raw disparity, 11 bits with 2047 for nothing, taken for millimetres.
+pub(super) fn kinect_raw(frame: &Frame, probe: &Probe) -> Option<String> {
+    let (Pixels::U16(_), Measure::Depth { .. }) = (&frame.pixels, frame.sensor.measure) else { return None };
+    let (largest, count) = probe.largest()?;
+    let next = probe.valid[..probe.valid.len() - count].last()?;
+    let is_raw = largest == 2047.0 && count * 200 > probe.pixels && (300.0..1_200.0).contains(next);
+    is_raw.then(|| {
+        "values up to 1,100, and 2047 for nothing, are a Kinect's raw disparity: try --preset kinect1-raw, or --encoding \
+         kinect-raw"
+            .to_string()
+    })
+}
+
 /// 16 bits that hold 8.
 pub(super) fn grey_levels(frame: &Frame, probe: &Probe) -> Option<String> {
     let Pixels::U16(_) = frame.pixels else { return None };
@@ -40,6 +53,10 @@ pub(super) fn multiples(frame: &Frame, probe: &Probe) -> Option<String> {
     if multiples_of(8.0) {
         let packed = "the values are multiples of 8, as Kinect SDK 1 and SUN RGB-D pack them";
         return Some(format!("{packed}: try --encoding kinect-sdk or sun-rgbd"));
+    }
+    if multiples_of(10.0) {
+        let tenths = "the values are multiples of 10, as millimetres in units of 0.1 mm are";
+        return Some(format!("{tenths}: try --depth-scale 0.0001, or --encoding tum for 1/5000 m"));
     }
     multiples_of(5.0)
         .then(|| "the values are multiples of 5, as in TUM RGB-D (5000 a metre): try --encoding tum".to_string())

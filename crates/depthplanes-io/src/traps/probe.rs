@@ -20,6 +20,10 @@ pub(crate) struct Probe {
     pub(crate) pairs: Vec<[f64; 2]>,
     /// Whether the file's samples are whole numbers.
     pub(crate) is_integer: bool,
+    /// Pixels among them that are below 0; only floats are.
+    pub(crate) negative: usize,
+    /// How many times the median of the valid values in the lower half of the picture is that in the upper half.
+    pub(crate) below_to_above: Option<f64>,
 }
 
 impl Probe {
@@ -36,10 +40,22 @@ impl Probe {
 
     fn values<T: Pixel>(view: DepthView<'_, T>, stride: usize) -> Probe {
         let (width, valid) = (view.width(), view.validity());
-        let mut probe = Probe { pixels: 0, valid: Vec::new(), pairs: Vec::new(), is_integer: true };
+        let mut probe = Probe {
+            pixels: 0,
+            valid: Vec::new(),
+            pairs: Vec::new(),
+            is_integer: true,
+            negative: 0,
+            below_to_above: None,
+        };
+        let mut above = 0;
         for at in (0..width * view.height()).step_by(stride) {
             probe.pixels += 1;
             let (row, u) = (view.row(at / width), at % width);
+            probe.negative += usize::from(row[u].into() < 0.0);
+            if 2 * (at / width) < view.height() {
+                above = probe.valid.len();
+            }
             if valid.holds(row[u]) {
                 probe.valid.push(row[u].into());
                 if u + 1 < width && valid.holds(row[u + 1]) {
@@ -47,6 +63,10 @@ impl Probe {
                 }
             }
         }
+        probe.below_to_above = {
+            let (above, below) = probe.valid.split_at_mut(above);
+            middle(above).zip(middle(below)).map(|(above, below)| below / above)
+        };
         probe.valid.sort_unstable_by(f64::total_cmp);
         probe
     }
@@ -73,6 +93,11 @@ impl Probe {
         levels.dedup();
         levels
     }
+}
+
+fn middle(values: &mut [f64]) -> Option<f64> {
+    let at = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(at, f64::total_cmp).1)
 }
 
 fn is_coprime(mut a: usize, mut b: usize) -> bool {

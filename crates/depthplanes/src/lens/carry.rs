@@ -216,6 +216,7 @@ impl Carrier {
     ) {
         (out.width, out.height) = (map.width(), map.height());
         (out.valid_pixels, out.filled_pixels) = (map.valid_pixels(), 0);
+        out.noise = found.noise;
         let old = out.curved.take();
         out.curved = found.curved.as_ref().map(|curved| {
             self.carry_labels(map, rectifier, &curved.labels, curved.regions.len());

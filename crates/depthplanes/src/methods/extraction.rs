@@ -102,7 +102,7 @@ impl Extraction {
         selection.paint(groups, &mut out.labels);
         (out.width, out.height) = (map.width(), map.height());
         (out.valid_pixels, out.filled_pixels) = (valid_pixels, 0);
-        out.noise = wanted.noise.map(NoiseModel::expected);
+        out.noise = wanted.noise.and_then(NoiseModel::expected);
         job.done("label");
         Ok(())
     }

@@ -122,16 +122,17 @@ impl NoiseModel {
         self.sigma_by(&self.smooth, q)
     }
 
-    /// What is expected, for the record.
-    pub(crate) fn expected(&self) -> ExpectedNoise {
+    /// What is expected, for the record; none if its numbers cannot be given.
+    pub(crate) fn expected(&self) -> Option<ExpectedNoise> {
         let has_smooth = self.is_smooth_shown || !self.smooth.is_zero();
-        ExpectedNoise {
+        let is_finite = self.noise.is_finite() && self.smooth.is_finite() && self.ray.is_finite();
+        is_finite.then_some(ExpectedNoise {
             white: self.noise,
             white_is_estimated: self.is_scatter,
             smooth: has_smooth.then_some(self.smooth),
             smooth_is_estimated: self.is_smooth_shown,
             lateral_noise_px: self.ray,
-        }
+        })
     }
 
     /// Lateral error of a pixel's direction, pixels, one standard deviation. It is no part of

@@ -52,6 +52,15 @@ impl SensorNoise {
         }
     }
 
+    /// Whether all its numbers can be given.
+    pub(crate) fn is_finite(&self) -> bool {
+        match self {
+            SensorNoise::Depth { base, growth } => base.is_finite() && growth.is_finite(),
+            SensorNoise::Value { sigma } => sigma.is_finite(),
+            SensorNoise::Table(table) => table.rows().iter().flatten().all(|number| number.is_finite()),
+        }
+    }
+
     /// Whether there is none.
     pub(crate) fn is_zero(&self) -> bool {
         matches!(self, SensorNoise::Depth { base: 0.0, growth: 0.0 } | SensorNoise::Value { sigma: 0.0 })
