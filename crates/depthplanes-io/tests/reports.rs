@@ -78,5 +78,5 @@ fn what_stands_for_nothing_is_no_plane() {
     let options = ReadOptions { disparity: true, scale: Some(16.0), stereo: Some(rig), ..with(CAMERA) };
     let frame = report("disparity_65520.png", &options).unwrap();
     check("65520", &frame, &[WALL, FLOOR, FRONT], CLOSE);
-    assert!(notes(&frame).contains("--missing 65520"));
+    assert!(notes(&frame).contains("65520 is the -16"));
 }

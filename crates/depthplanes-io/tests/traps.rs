@@ -315,3 +315,60 @@ fn who_stated_the_noise_is_known() {
     assert_eq!(of(&options).0, Some(Source::Stated));
     assert_eq!(of(&encoding("tum")).2, "stated");
 }
+
+#[test]
+fn disparity_taken_for_depth_is_noticed_by_where_it_is_large() {
+    let disparity = |depth: f64| 115.2 * 0.3 / depth;
+    for (name, bytes) in [
+        ("pixels as floats", floats(|_, depth| disparity(depth))),
+        ("1/256 px", counts(|_, depth| 256.0 * disparity(depth))),
+        ("1/16 px", counts(|_, depth| 16.0 * disparity(depth) * 8.0)),
+        ("1/m", floats(|_, depth| 1.0 / depth)),
+    ] {
+        noted(name, &read(&bytes, &camera()), &["--disparity", "--encoding inverse-depth"]);
+    }
+}
+
+#[test]
+fn disparity_of_16_bits_says_its_unit() {
+    let rig = Stereo { focal_px: 115.2, baseline_m: 0.3, doffs_px: 0.0 };
+    let options = ReadOptions { disparity: true, stereo: Some(rig), ..camera() };
+    let disparity = |depth: f64| 115.2 * 0.3 / depth;
+    let matched = |at: usize, depth: f64| if at % 16 == 0 { 65_520.0 } else { (16.0 * disparity(depth)).round() };
+    let frame = read(&counts(matched), &options);
+    assert_eq!(frame.encoding, "opencv");
+    noted("unsigned", &frame, &["`opencv`", "--scale"]);
+    check("unsigned", &frame, &ROOM, CLOSE);
+    let signed = depths_m().into_iter().enumerate().map(|(at, depth)| matched(at, depth) as u16);
+    let frame = read(&npy("<i2", signed.flat_map(u16::to_le_bytes).collect()), &options);
+    check("signed", &frame, &ROOM, CLOSE);
+    let frame = read(&counts(|_, depth| 256.0 * disparity(depth)), &options);
+    noted("KITTI", &frame, &["`kitti`", "--scale"]);
+    check("KITTI", &frame, &ROOM, CLOSE);
+    let negative = read(&floats(|_, depth| -disparity(depth)), &options);
+    assert!(negative.warnings.iter().any(|note| note.contains("other sign")), "{:?}", negative.warnings);
+}
+
+#[test]
+fn raw_disparity_of_a_kinect_is_no_millimetres() {
+    let raw = |depth: f64| (3.3309495161 - 1.0 / depth) / 0.0030711016;
+    for (name, options) in [("guessed", camera()), ("with the wrong preset", preset("kinect1"))] {
+        let frame = read(&counts(|at, depth| if at % 9 == 0 { 2047.0 } else { raw(depth) }), &options);
+        noted(name, &frame, &["--preset kinect1-raw"]);
+    }
+}
+
+#[test]
+fn cameras_in_other_words_are_named() {
+    let of = |fx, fy, cx, cy| ReadOptions { intrinsics: Some(depthplanes::Intrinsics { fx, fy, cx, cy }), ..camera() };
+    let refused = |options| decode(&counts(millimetres), "room", &options).unwrap_err().to_string();
+    assert!(refused(of(0.9, 1.2, 0.5, 0.5)).contains("parts of the picture"), "{}", refused(of(0.9, 1.2, 0.5, 0.5)));
+    let frame = read(&counts(millimetres), &of(115.2, 63.5, 60.0, 47.5));
+    assert!(frame.warnings.iter().any(|note| note.contains("order")), "{:?}", frame.warnings);
+    let sized = |size| ReadOptions { camera_size: Some(size), ..of(576.0, 576.0, 319.5, 239.5) };
+    check("a camera of five times the size", &read(&counts(millimetres), &sized((640, 480))), &ROOM, CLOSE);
+    assert!(
+        refused(ReadOptions { camera_size: Some((480, 640)), ..of(576.0, 576.0, 239.5, 319.5) })
+            .contains("turned by 90")
+    );
+}
