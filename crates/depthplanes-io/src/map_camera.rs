@@ -19,6 +19,22 @@ const FAR: f64 = 0.2;
 /// Fields of view without a note, degrees: our choice. Long lenses and fisheyes are beyond them.
 const FIELD_DEG: [f64; 2] = [5.0, 150.0];
 
+/// Sizes of pictures whose nominal cameras have the principal point in the middle.
+const COMMON: [Size; 12] = [
+    (320, 240),
+    (424, 240),
+    (512, 424),
+    (640, 360),
+    (640, 400),
+    (640, 480),
+    (640, 576),
+    (848, 480),
+    (1280, 720),
+    (1280, 960),
+    (1920, 1080),
+    (1920, 1440),
+];
+
 /// What is stated of a map's camera.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stated<'a> {
@@ -208,6 +224,15 @@ fn checked(camera: &Intrinsics, map: Size, is_size_stated: bool, lens: Option<&D
         let accepted = format!("focal lengths first, then the principal point: {}", flag(&own));
         return Err(Error::parameter("camera", format_args!("{fx},{fy},{cx},{cy}"), accepted));
     }
+    let is_middle_of =
+        |(w, h): Size| (2.0 * cx + 1.0 - w as f64).abs() <= 1.5 && (2.0 * cy + 1.0 - h as f64).abs() <= 1.5;
+    if w != h && is_middle_of((h, w)) {
+        notes.push(format!(
+            "the principal point {cx},{cy} is the middle of {h} x {w} pixels, and the map has {w} x {h}: are cx and cy exchanged, or was \
+             the picture turned by 90 degrees?"
+        ));
+        return Ok(notes);
+    }
     let guess = whole_picture(camera, map);
     if is_outside && !is_size_stated {
         let accepted = match guess {
@@ -235,6 +260,13 @@ fn checked(camera: &Intrinsics, map: Size, is_size_stated: bool, lens: Option<&D
             size.0,
             size.1,
             flag(&scaled)
+        ));
+    } else if let Some((width, height)) =
+        COMMON.into_iter().find(|&size| !is_size_stated && size != map && !is_middle_of(map) && is_middle_of(size))
+    {
+        notes.push(format!(
+            "the principal point {cx},{cy} is the middle of {width} x {height} pixels, and the map has {w} x {h}: if it is a part of that \
+             picture, take the part's corner off the principal point; if it was resized, give --camera-size {width}x{height}"
         ));
     } else if !is_middle([cx, cy]) {
         notes.push(format!(

@@ -22,6 +22,8 @@ pub struct SensorPreset {
     pub encoding: &'static str,
     /// Columns, rows and the intrinsics for that size.
     pub camera: Option<(usize, usize, Intrinsics)>,
+    /// About how far it sees, metres, where that is known: its nominal range with much to spare.
+    pub far_m: Option<f64>,
     /// The value for "missing" beside the encoding's own.
     pub missing: Option<f64>,
     /// How far off a pixel is by itself, where that was published or measured.
@@ -77,7 +79,7 @@ impl fmt::Display for PresetNoise {
 }
 
 const fn preset(name: &'static str, encoding: &'static str, about: &'static str) -> SensorPreset {
-    SensorPreset { name, about, encoding, camera: None, missing: None, noise: None, smooth_noise: None }
+    SensorPreset { name, about, encoding, camera: None, far_m: None, missing: None, noise: None, smooth_noise: None }
 }
 
 impl SensorPreset {
@@ -96,8 +98,14 @@ impl SensorPreset {
         self
     }
 
+    const fn far(mut self, metres: f64) -> Self {
+        self.far_m = Some(metres);
+        self
+    }
+
+    /// Structured light of the PrimeSense kind: 11 bits end behind 9.76 m.
     const fn kinect(self) -> Self {
-        self.smooth_noise(KINECT_SMOOTH)
+        self.smooth_noise(KINECT_SMOOTH).far(10.0)
     }
 
     const fn missing(mut self, value: f64) -> Self {
@@ -146,9 +154,11 @@ pub const SENSOR_PRESETS: &[SensorPreset] = &[
         .kinect(),
     preset("kinect2", "millimetre", "Kinect v2, time of flight, kinect2_bridge's nominal camera")
         .camera(512, 424, [365.456, 365.456, 254.878, 205.395])
-        .noise(KINECT2),
-    preset("azure-kinect", "millimetre", "Azure Kinect; each camera has its own calibration, state it"),
-    preset("realsense-d4xx", "realsense", "RealSense D400 series; read intrinsics and depth scale from the camera"),
+        .noise(KINECT2)
+        .far(20.0),
+    preset("azure-kinect", "millimetre", "Azure Kinect; each camera has its own calibration, state it").far(20.0),
+    preset("realsense-d4xx", "realsense", "RealSense D400 series; read intrinsics and depth scale from the camera")
+        .far(30.0),
     preset("structure", "millimetre", "Structure Sensor, ScanNet's nominal depth camera")
         .camera(640, 480, [577.87, 577.87, 319.5, 239.5])
         .kinect(),

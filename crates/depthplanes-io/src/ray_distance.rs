@@ -47,6 +47,16 @@ pub(crate) fn to_depth(frame: &mut Frame) -> Result<()> {
     Ok(())
 }
 
+/// Turns a frame of depth that [`to_depth`] made back into what it was.
+pub(crate) fn to_distance(frame: &mut Frame) {
+    let (sensor, width) = (frame.sensor, frame.width);
+    if let Pixels::F32(depths) = &mut frame.pixels {
+        for (at, value) in depths.iter_mut().enumerate() {
+            *value *= ray_length(&sensor, [at % width, at / width]).unwrap_or(f64::NAN) as f32;
+        }
+    }
+}
+
 /// Length of a pixel's ray up to depth 1; `None` where the lens has none.
 fn ray_length(sensor: &Sensor, [u, v]: [usize; 2]) -> Option<f64> {
     Some(sensor.ray(u as f64, v as f64)?.iter().map(|x| x * x).sum::<f64>().sqrt())

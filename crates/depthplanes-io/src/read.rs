@@ -133,6 +133,14 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
     let scale =
         scale(options, encoding)?.or_else(|| scale_of_camera_file(&camera, encoding.name, is_stated, &mut image));
     let stereo = options.stereo.or(camera.stereo);
+    if let (Some(rig), Some(own), true) = (options.stereo, camera.intrinsics, encoding.disparity)
+        && (rig.focal_px / own.fx.abs() - 1.0).abs() > 0.02
+    {
+        let (focal, fx) = (rig.focal_px, own.fx);
+        image
+            .warnings
+            .push(format!("the rig's focal length is {focal} pixels and the camera's {fx}: one of them is wrong"));
+    }
     let meaning = (encoding.apply)(&mut image, &Given { scale, stereo })?;
     let of_preset = |part: fn(&SensorPreset) -> Option<PresetNoise>| part(preset?)?.of();
     let of_preset_or_file = preset.and_then(|preset| preset.missing).or(image.missing);

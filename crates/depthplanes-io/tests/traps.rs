@@ -372,3 +372,68 @@ fn cameras_in_other_words_are_named() {
             .contains("turned by 90")
     );
 }
+
+#[test]
+fn depths_beyond_the_presets_sensor_are_named() {
+    for of in ["kinect1", "kinect2", "structure", "7-scenes", "azure-kinect", "realsense-d4xx"] {
+        let frame = read(&counts(|_, depth| 16_000.0 * depth), &preset(of));
+        noted(of, &frame, &["the preset's sensor sees about", "--scale"]);
+    }
+}
+
+#[test]
+fn a_map_of_noise_is_no_surface() {
+    let random = |at: usize| ((at as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as f64 / (1u64 << 24) as f64;
+    let frame = read(&counts(|at, _| 500.0 + 3000.0 * random(at)), &camera());
+    if !room::planes(&frame).0.is_empty() {
+        noted("noise", &frame, &["scatter by", "noise rather than a surface"]);
+    }
+}
+
+#[test]
+fn a_picture_widened_to_16_bits_is_named() {
+    let frame = read(&counts(|_, depth| 257.0 * (40.0 * depth).round()), &camera());
+    noted("8 bits", &frame, &["multiples of 257", "--encoding grey"]);
+    for step in [5.0, 10.0, 20.0, 50.0] {
+        let frame = read(&counts(|_, depth| step * (1000.0 * depth / step).round()), &camera());
+        assert!(!notes(&frame).contains("multiples"), "rounded to {step} mm: {}", notes(&frame));
+    }
+}
+
+#[test]
+fn depth_that_is_taken_for_distance_is_noticed() {
+    let frame = read(&floats(metres), &ReadOptions { ray_distance: true, ..camera() });
+    noted("depth", &frame, &["leave --ray-distance out"]);
+}
+
+#[test]
+fn wide_disparities_and_two_focal_lengths_are_named() {
+    let rig = |focal_px| ReadOptions {
+        stereo: Some(Stereo { focal_px, baseline_m: 0.3, doffs_px: 0.0 }),
+        ..encoding("disparity")
+    };
+    let sixteenths = counts(|_, depth| 16.0 * 115.2 * 0.3 / depth);
+    noted("sixteenths", &read(&sixteenths, &rig(115.2)), &["in 128 columns", "--scale 16"]);
+    let pixels = floats(|_, depth| 115.2 * 0.3 / depth);
+    noted("another focal length", &read(&pixels, &rig(230.4)), &["one of them is wrong"]);
+}
+
+#[test]
+fn cameras_of_turned_and_cut_pictures_are_noticed() {
+    let [width, height] = SIZE.map(|side| side as f64);
+    let of = |cx, cy| ReadOptions { intrinsics: Some(depthplanes::Intrinsics { cx, cy, ..CAMERA }), ..camera() };
+    let turned = read(&counts(millimetres), &of((height - 1.0) / 2.0, (width - 1.0) / 2.0));
+    noted("turned", &turned, &["exchanged", "turned by 90 degrees"]);
+    let bytes = [format!("P5 640 360 65535\n").into_bytes(), [7, 208].repeat(640 * 360)].concat();
+    let options = ReadOptions {
+        intrinsics: Some(depthplanes::Intrinsics { fx: 576.0, fy: 576.0, cx: 319.5, cy: 239.5 }),
+        ..Default::default()
+    };
+    noted("cut", &read(&bytes, &options), &["the middle of 640 x 480", "part of that picture"]);
+}
+
+#[test]
+fn pixels_that_stand_apart_are_named() {
+    let bytes = counts(|at, depth| if at % 4 == 0 && at / SIZE[0] % 4 == 0 { 1000.0 * depth } else { 0.0 });
+    noted("one of 16", &read(&bytes, &camera()), &["stand apart"]);
+}

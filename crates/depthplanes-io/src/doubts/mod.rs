@@ -9,5 +9,8 @@ use crate::outputs::Report;
 
 /// What a person should know of a result.
 pub fn doubts(report: &Report<'_>) -> Vec<String> {
-    [planes::out_of_sight(report), planes::huge(report), reading::better(report)].into_iter().flatten().collect()
+    [planes::out_of_sight(report), planes::huge(report), planes::scattered(report), reading::better(report)]
+        .into_iter()
+        .flatten()
+        .collect()
 }

@@ -51,3 +51,18 @@ pub(super) fn huge(report: &Report<'_>) -> Option<String> {
         )
     })
 }
+
+/// Scatter of a plane's points, as a share of its depth, beyond which it is no surface. On recorded frames it is below 0.05.
+const SCATTER: f64 = 0.15;
+
+/// A plane whose points scatter as those of no surface do.
+pub(super) fn scattered(report: &Report<'_>) -> Option<String> {
+    let planes = report.detection.planes.iter().filter(|plane| plane.share_of_valid > 0.1);
+    let found = planes.filter_map(|plane| Some((plane.label, plane.metric.as_ref()?)));
+    let (label, metric) = found.into_iter().find(|(_, metric)| metric.rms_m > SCATTER * metric.centroid_m[2])?;
+    Some(format!(
+        "the points of plane {label} scatter by {} at a depth of {}: noise rather than a surface? check --encoding and the file",
+        length(metric.rms_m),
+        length(metric.centroid_m[2])
+    ))
+}

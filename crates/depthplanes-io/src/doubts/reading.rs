@@ -39,7 +39,8 @@ impl Score {
 /// A reading under which far more pixels lie on planes.
 pub(super) fn better(report: &Report<'_>) -> Option<String> {
     let (frame, as_read) = (report.frame, Score::of(report.detection));
-    if report.method.name != "planar" || as_read.share > SHARE || report.detection.valid_pixels < FEW {
+    let is_labels = frame.warnings.iter().any(|warning| warning.contains("label image"));
+    if is_labels || report.method.name != "planar" || as_read.share > SHARE || report.detection.valid_pixels < FEW {
         return None;
     }
     let told = |reading: Score, advice: &str| {
@@ -48,6 +49,12 @@ pub(super) fn better(report: &Report<'_>) -> Option<String> {
     };
     let nearer_below = is_larger_below(frame)?;
     match frame.sensor.measure {
+        Measure::Depth { .. } if frame.provenance.ray_distance => {
+            let mut distances = frame.clone();
+            ray_distance::to_distance(&mut distances);
+            let score = score(&distances, distances.sensor)?;
+            score.beats(&as_read).then(|| told(score, "they are depths already: leave --ray-distance out"))
+        }
         Measure::Depth { .. } => {
             let along_rays = as_ray_distance(frame).filter(|score| score.beats(&as_read));
             // Most pictures have what is near below. Where large values are, they are near if they are inverse depth.
@@ -76,9 +83,6 @@ fn with(frame: &Frame, measure: Measure) -> Option<Score> {
 }
 
 fn as_ray_distance(frame: &Frame) -> Option<Score> {
-    if frame.provenance.ray_distance {
-        return None;
-    }
     let mut depth = frame.clone();
     ray_distance::to_depth(&mut depth).ok()?;
     score(&depth, depth.sensor)

@@ -104,8 +104,14 @@ pub(super) fn negative(_: &Frame, probe: &Probe) -> Option<String> {
 }
 
 /// Most of the map is missing.
-pub(super) fn mostly(_: &Frame, probe: &Probe) -> Option<String> {
+pub(super) fn mostly(frame: &Frame, probe: &Probe) -> Option<String> {
     let share = probe.missing_share();
-    (share > 0.5)
-        .then(|| format!("{} of the pixels are missing: check --missing, --valid-range and --encoding", percent(share)))
+    let is_apart = probe.valid.len() >= FEW && 5 * probe.pairs.len() < probe.valid.len();
+    let advice = if is_apart {
+        "the valid ones stand apart, so that few planes are found: save every second (third ..) column and row alone"
+    } else {
+        "check --missing, --valid-range and --encoding"
+    };
+    (share > if is_small(frame) { 0.5 } else { 0.49 })
+        .then(|| format!("{} of the pixels are missing: {advice}", percent(share)))
 }

@@ -39,7 +39,11 @@ pub(super) fn grey_levels(frame: &Frame, probe: &Probe) -> Option<String> {
         .then(|| format!("16 bits but no value above {largest}: grey levels or labels? try --encoding grey"))
 }
 
-/// Millimetres that are multiples of 8 or 5.
+/// A median from which on millimetres that are multiples of 5 or 10 are rather finer units: few rooms are so deep, and in
+/// units of 1/5000 m it is 0.9 m.
+const FAR_MM: f64 = 4500.0;
+
+/// Millimetres that are multiples of 257, 8, 10 or 5.
 pub(super) fn multiples(frame: &Frame, probe: &Probe) -> Option<String> {
     let is_millimetres = frame.sensor.measure == Measure::Depth { metres: 0.001 };
     if !probe.is_integer || !is_millimetres || frame.encoding != "millimetre" || probe.levels().len() < 8 {
@@ -50,9 +54,18 @@ pub(super) fn multiples(frame: &Frame, probe: &Probe) -> Option<String> {
         let multiples = probe.valid.iter().filter(|value| *value % of == 0.0).count();
         probe.valid.len() >= FEW && multiples * 100 >= probe.valid.len() * 95
     };
+    let median = probe.median()?;
+    if multiples_of(257.0) {
+        let widened = "the values are multiples of 257, as a picture of 8 bits has when it is widened to 16";
+        return Some(format!("{widened}: grey levels, not depth? try --encoding grey"));
+    }
     if multiples_of(8.0) {
         let packed = "the values are multiples of 8, as Kinect SDK 1 and SUN RGB-D pack them";
         return Some(format!("{packed}: try --encoding kinect-sdk or sun-rgbd"));
+    }
+    // Millimetres rounded to centimetres are multiples as well, but nearer.
+    if median < FAR_MM {
+        return None;
     }
     if multiples_of(10.0) {
         let tenths = "the values are multiples of 10, as millimetres in units of 0.1 mm are";

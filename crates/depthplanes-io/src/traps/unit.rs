@@ -4,20 +4,39 @@ use depthplanes::Measure;
 
 use super::probe::{FEW, Probe};
 use crate::frame::Frame;
+use crate::presets;
 
 /// Median depths that a camera may have: a close-up, and the far side of a valley.
 const USUAL_M: std::ops::RangeInclusive<f64> = 0.05..=100.0;
 /// Median depths that a flag is proposed for: from a desk to a street.
 const LIKELY_M: std::ops::RangeInclusive<f64> = 0.15..=60.0;
 
-/// A median depth that no camera has.
+/// A median depth that no camera has, or not the preset's; a median disparity that is wider than the map.
 pub(super) fn median(frame: &Frame, probe: &Probe) -> Option<String> {
     if probe.valid.len() < FEW {
         return None;
     }
-    let median_m = frame.sensor.measure.depth_m(probe.median()?)?;
-    let doubt = doubt_of_depth(frame, median_m)?;
-    Some(format!("the median depth would be {}: {doubt}", length(median_m)))
+    let median = probe.median()?;
+    if let (Measure::InverseDepth { slope, .. }, Some(rig)) = (frame.sensor.measure, frame.provenance.stereo) {
+        let (pixels, width) = (median * slope * rig.focal_px * rig.baseline_m, frame.width);
+        if pixels > width as f64 {
+            return Some(format!(
+                "the median disparity would be {pixels:.0} pixels in {width} columns: try --scale 16 or 256 (map units per pixel \
+                 of disparity)"
+            ));
+        }
+    }
+    let median_m = frame.sensor.measure.depth_m(median)?;
+    if let Some(doubt) = doubt_of_depth(frame, median_m) {
+        return Some(format!("the median depth would be {}: {doubt}", length(median_m)));
+    }
+    let preset = presets::by_name(frame.provenance.preset?).ok()?;
+    let far_m = preset.far_m.filter(|&far_m| median_m > far_m)?;
+    Some(format!(
+        "the median depth would be {}, and the preset's sensor sees about {}: check --scale, --depth-scale and --encoding",
+        length(median_m),
+        length(far_m)
+    ))
 }
 
 /// What to try where something lies at a depth that no camera sees; `None` where one may.
