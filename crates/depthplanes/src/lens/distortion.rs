@@ -130,13 +130,25 @@ impl Distortion {
     /// What a pinhole camera would see at (x, y) of the distorted picture; `None` where the lens puts nothing: beyond 85
     /// degrees from the axis, and where the formula folds back.
     pub fn undistort(&self, at: [f64; 2]) -> Option<[f64; 2]> {
+        self.undistort_from(at, at)
+    }
+
+    /// As [`Distortion::undistort`], with a first guess near what is looked for.
+    pub(super) fn undistort_from(&self, at: [f64; 2], guess: [f64; 2]) -> Option<[f64; 2]> {
         let found = match self.model {
             DistortionModel::InverseBrownConrady => self.polynomial(at),
             DistortionModel::KannalaBrandt => self.straight(at)?,
-            DistortionModel::BrownConrady | DistortionModel::ModifiedBrownConrady => self.newton(at, at)?,
+            DistortionModel::BrownConrady | DistortionModel::ModifiedBrownConrady => self.newton(at, guess)?,
         };
         let [x, y] = found;
         (x.is_finite() && y.is_finite() && x.hypot(y) <= WIDEST && !self.folds(at, found)).then_some(found)
+    }
+
+    /// Whether the lens puts the ray (x, y) at that place of the distorted picture, and not another one nearer the axis.
+    pub(super) fn shows(&self, ray: [f64; 2], distorted: [f64; 2]) -> bool {
+        let r = ray[0].hypot(ray[1]);
+        let grows = self.model != DistortionModel::KannalaBrandt || self.radius(r.atan())[1] > 0.0;
+        r <= WIDEST && grows && !self.folds(distorted, ray)
     }
 
     /// OpenCV's formula (calib3d): radial, tangential and thin prism terms.

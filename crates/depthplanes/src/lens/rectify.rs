@@ -154,12 +154,18 @@ impl<T: Pixel> Values<T> {
 
 /// The undistorted normalised coordinates of each pixel of the map; NaN where the lens puts nothing, and beyond [`WIDEST`].
 fn rays([width, height]: [usize; 2], camera: &Intrinsics, distortion: &Distortion) -> Vec<[f32; 2]> {
-    let ray = |at: usize| {
+    // The place of the pixel before, and its ray: that of the next one is as far from it.
+    let mut before: Option<[[f64; 2]; 2]> = None;
+    let mut ray = |at: usize| {
         let [x, y, _] = camera.ray((at % width) as f64, (at / width) as f64);
-        let straight = distortion.undistort([x, y]).filter(|[x, y]| x.hypot(*y) <= WIDEST);
+        let near = before.filter(|_| at % width > 0);
+        let guess = near.map(|[place, ray]| [ray[0] + x - place[0], ray[1] + y - place[1]]);
+        let found = guess.and_then(|guess| distortion.undistort_from([x, y], guess));
+        let straight = found.or_else(|| distortion.undistort([x, y])).filter(|[x, y]| x.hypot(*y) <= WIDEST);
+        before = straight.map(|ray| [[x, y], ray]);
         straight.map_or([f32::NAN; 2], |ray| ray.map(|side| side as f32))
     };
-    (0..width * height).map(ray).collect()
+    (0..width * height).map(&mut ray).collect()
 }
 
 /// Smallest and largest x and y of the rays; the axis alone if there is none.
@@ -206,8 +212,7 @@ fn places(
             return [f32::NAN; 2];
         }
         // Beyond the fold of a formula other rays have the same pixels.
-        let back = distortion.undistort(distorted).filter(|back| (back[0] - x).hypot(back[1] - y) < 1e-4);
-        back.map_or([f32::NAN; 2], |_| [u as f32, v as f32])
+        if distortion.shows([x, y], distorted) { [u as f32, v as f32] } else { [f32::NAN; 2] }
     };
     (0..columns * rows).map(place).collect()
 }
