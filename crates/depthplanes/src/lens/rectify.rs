@@ -158,7 +158,7 @@ fn rays([width, height]: [usize; 2], camera: &Intrinsics, distortion: &Distortio
     let mut before: Option<[[f64; 2]; 2]> = None;
     let mut ray = |at: usize| {
         let [x, y, _] = camera.ray((at % width) as f64, (at / width) as f64);
-        let near = before.filter(|_| at % width > 0);
+        let near = before.filter(|_| !at.is_multiple_of(width));
         let guess = near.map(|[place, ray]| [ray[0] + x - place[0], ray[1] + y - place[1]]);
         let found = guess.and_then(|guess| distortion.undistort_from([x, y], guess));
         let straight = found.or_else(|| distortion.undistort([x, y])).filter(|[x, y]| x.hypot(*y) <= WIDEST);
