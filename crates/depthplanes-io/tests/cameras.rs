@@ -401,7 +401,7 @@ fn rigs_units_and_lenses_are_read() {
     assert!((baseline("depthai", 0) - 0.075).abs() < 1e-9);
     assert_eq!(of("orb-slam", 0).unit_m, Some(1.0 / 5000.0));
     assert_eq!(of("orb-slam", 0).stereo, None);
-    assert!((of("json-yaml", 5).unit_m.unwrap() - 1e-4).abs() < 1e-12);
+    assert!((of("json-yaml", 14).unit_m.unwrap() - 1e-4).abs() < 1e-12);
     let azure = of("azure-kinect", 0);
     let lens = azure.distortion.unwrap();
     assert_eq!(lens.model(), DistortionModel::BrownConrady);

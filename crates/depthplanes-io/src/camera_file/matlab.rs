@@ -36,13 +36,22 @@ fn turned(text: &str) -> Option<Vec<f64>> {
     ([m[2], m[5]] == [0.0; 2] && m[8] == 1.0).then(|| m.to_vec())
 }
 
+/// What Matlab shows has its names at the right, so that it is no YAML.
+fn is_printed(text: &str) -> bool {
+    let has = |name: &str| lines::numbers(text, name).is_some_and(|numbers| numbers.len() == 2);
+    text.contains("FocalLength:") && has("focallength") && has("principalpoint")
+}
+
 pub(super) fn recognise(document: &Document<'_>) -> bool {
-    turned(document.text).is_some() || document.tree().and_then(shown).is_some()
+    turned(document.text).is_some() || is_printed(document.text) || document.tree().and_then(shown).is_some()
 }
 
 pub(super) fn parse(document: &Document<'_>) -> Result<CameraFile> {
     let object = document.tree().and_then(shown);
-    let of = |name: &str| object.and_then(|object| get(object, &[name])).and_then(numbers).unwrap_or_default();
+    let of = |name: &str| {
+        let stated = object.and_then(|object| get(object, &[name])).and_then(numbers);
+        stated.or_else(|| lines::numbers(document.text, name)).unwrap_or_default()
+    };
     let mut camera = match (turned(document.text), &of("focallength")[..], &of("principalpoint")[..]) {
         (Some(m), ..) => matrix(&m)?,
         (None, &[fx, fy], &[cx, cy]) => pinhole(fx, fy, cx, cy)?,

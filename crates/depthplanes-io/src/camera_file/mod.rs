@@ -228,6 +228,9 @@ pub fn parse(text: &str) -> Result<CameraFile> {
 /// As [`parse`].
 pub fn parse_as(text: &str) -> Result<(CameraFile, &'static CameraForm)> {
     let document = Document::new(text);
+    if is_web_page(document.text) {
+        return Err(unreadable("it is a web page: was a download page saved in place of the file?"));
+    }
     match FORMS.iter().find(|form| (form.recognise)(&document)) {
         Some(form) => Ok(((form.parse)(&document)?, form)),
         None => Err(match document.read() {
@@ -240,14 +243,16 @@ pub fn parse_as(text: &str) -> Result<(CameraFile, &'static CameraForm)> {
     }
 }
 
+fn is_web_page(text: &str) -> bool {
+    let start = text.chars().take(20).collect::<String>().to_lowercase();
+    start.starts_with("<!doctype html") || start.starts_with("<html")
+}
+
 /// What a text that is no camera file seems to be.
 fn looks_like(text: &str) -> Option<&'static str> {
     let begins = |starts: &[&str]| starts.iter().any(|start| text.starts_with(start));
     let has = |parts: &[&str]| parts.iter().any(|part| text.contains(part));
-    let lower: String = text.chars().take(20).collect::<String>().to_lowercase();
-    if lower.starts_with("<!doctype html") || lower.starts_with("<html") {
-        Some("it is a web page: was a download page saved in place of the file?")
-    } else if begins(&["version https://git-lfs"]) {
+    if begins(&["version https://git-lfs"]) {
         Some("it is a pointer of Git LFS: fetch the file itself with `git lfs pull`")
     } else if begins(&["ply\n", "ply\r", "# .PCD", "solid "]) {
         Some("it is a point cloud or a mesh")
