@@ -42,7 +42,74 @@ const SPECIMENS: &[Specimen] = &[
     ("numbers", "525.0 0 319.5\n0 526.0 239.5\n0 0 1\n", VGA, None),
     ("numbers", "[[525.   0.  319.5]\n [  0.  526.  239.5]\n [  0.    0.    1. ]]", VGA, None),
     ("numbers", "K = [525 0 319.5; 0 526 239.5; 0 0 1];", VGA, None),
-    ("numbers", "IntrinsicMatrix = [525 0 0; 0 526 0; 319.5 239.5 1]", VGA, None),
+    ("matlab", "IntrinsicMatrix = [525 0 0; 0 526 0; 320.5 240.5 1]", VGA, None),
+    (
+        "matlab",
+        "cameraParams.IntrinsicMatrix\n\nans =\n\n  525.0  0  0\n  0  526.0  0\n  320.5  240.5  1.0\n",
+        VGA,
+        None,
+    ),
+    (
+        "matlab",
+        "cameraIntrinsics with properties:\n\n             FocalLength: [525 526]\n          PrincipalPoint: [320.5 240.5]\n               ImageSize: [480 640]\n        RadialDistortion: [0 0]\n    TangentialDistortion: [0 0]\n                    Skew: 0\n                       K: [3x3 double]\n",
+        VGA,
+        Some((640, 480)),
+    ),
+    (
+        "bouguet",
+        "% Intrinsic and Extrinsic Camera Parameters\n%-- Focal length:\nfc = [ 525.0 ; 526.0 ];\n\n%-- Principal point:\ncc = [ 319.5 ; 239.5 ];\nalpha_c = 0.0;\nkc = [ 0 ; 0 ; 0 ; 0 ; 0 ];\n%-- Image size:\nnx = 640;\nny = 480;\n",
+        VGA,
+        Some((640, 480)),
+    ),
+    (
+        "scannet",
+        "axisAlignment = 0.9 0.1 0 0 -0.1 0.9 0 0 0 0 1 0 0 0 0 1 \ncolorHeight = 968\ncolorWidth = 1296\ndepthHeight = 480\ndepthWidth = 640\nfx_color = 1170.2\nfx_depth = 525\nfy_color = 1170.2\nfy_depth = 526\nmx_color = 647.75\nmx_depth = 319.5\nmy_color = 483.75\nmy_depth = 239.5\nsceneType = Office\n",
+        VGA,
+        Some((640, 480)),
+    ),
+    (
+        "scannet",
+        "m_versionNumber = 4\nm_sensorName = StructureSensor\nm_colorWidth = 1296\nm_colorHeight = 968\nm_depthWidth = 640\nm_depthHeight = 480\nm_depthShift = 1000\nm_calibrationColorIntrinsic = 1170.19 0 647.75 0 0 1170.19 483.75 0 0 0 1 0 0 0 0 1 \nm_calibrationDepthIntrinsic = 525 0 319.5 0 0 526 239.5 0 0 0 1 0 0 0 0 1 \nm_frames.size = 100\n",
+        VGA,
+        Some((640, 480)),
+    ),
+    (
+        "ost",
+        "# oST version 5.0 parameters\n\n\n[image]\n\nwidth\n640\n\nheight\n480\n\n[narrow_stereo]\n\ncamera matrix\n525 0 319.5\n0 526 239.5\n0 0 1\n\ndistortion\n-0.12 0.04 0.001 -0.002 0\n\nrectification\n1 0 0\n0 1 0\n0 0 1\n\nprojection\n525 0 319.5 0\n0 526 239.5 0\n0 0 1 0\n",
+        VGA,
+        Some((640, 480)),
+    ),
+    ("realsense-python", "[ 640x480  p[319.5 239.5]  f[525 526]  Brown Conrady [0 0 0 0 0] ]", VGA, Some((640, 480))),
+    (
+        "json-yaml",
+        "width: 640, height: 480, ppx: 319.5, ppy: 239.5, fx: 525, fy: 526, model: Brown Conrady, coeffs: [0, 0, 0, 0, 0]",
+        VGA,
+        Some((640, 480)),
+    ),
+    ("json-yaml", "{'fx': 525.0, 'fy': 526.0, 'cx': 319.5, 'cy': 239.5}", VGA, None),
+    ("json-yaml", "fx=525\nfy=526\ncx=319.5\ncy=239.5\n", VGA, None),
+    ("json-yaml", "fx, fy, cx, cy = 525, 526, 319.5, 239.5\nscale = 1000.0  # per metre", VGA, None),
+    ("json-yaml", "fx = 525, fy = 526, cx = 319.5, cy = 239.5", VGA, None),
+    (
+        "json-yaml",
+        "# the rig\n[camera]\nname = \"a\"\nfx = 525.0\nfy = 526.0\ncx = 319.5\ncy = 239.5\nwidth = 640\nheight = 480\n",
+        VGA,
+        Some((640, 480)),
+    ),
+    (
+        "json-yaml",
+        "name = \"a\"\nresolution = [640, 480]\nK = [\n  [525, 0, 319.5],\n  [0, 526, 239.5],\n  [0, 0, 1],\n]\n",
+        VGA,
+        Some((640, 480)),
+    ),
+    ("json-yaml", "fx,fy,cx,cy\n525,526,319.5,239.5\n", VGA, None),
+    (
+        "json-yaml",
+        "# width height fx fy cx cy\n640 480 525 526 319.5 239.5\n640 480 525 526 319.5 239.5\n",
+        VGA,
+        Some((640, 480)),
+    ),
+    ("numbers", "640 480 525 526 319.5 239.5\n", VGA, Some((640, 480))),
     ("numbers", "array([[525., 0., 319.5], [0., 526., 239.5], [0., 0., 1.]])", VGA, None),
     ("numbers", "525 0 319.5 0\n0 526 239.5 0\n0 0 1 0\n", VGA, None),
     (
@@ -334,7 +401,7 @@ fn rigs_units_and_lenses_are_read() {
     assert!((baseline("depthai", 0) - 0.075).abs() < 1e-9);
     assert_eq!(of("orb-slam", 0).unit_m, Some(1.0 / 5000.0));
     assert_eq!(of("orb-slam", 0).stereo, None);
-    assert!((of("json-yaml", 5).unit_m.unwrap() - 1e-4).abs() < 1e-12);
+    assert!((of("json-yaml", 14).unit_m.unwrap() - 1e-4).abs() < 1e-12);
     let azure = of("azure-kinect", 0);
     let lens = azure.distortion.unwrap();
     assert_eq!(lens.model(), DistortionModel::BrownConrady);
@@ -502,6 +569,125 @@ fn the_unit_of_a_camera_file_is_that_of_a_map_whose_unit_is_a_guess() {
     assert!(frame.warnings.iter().any(|note| note.contains("--scale")));
     let frame = framed(orb, (640, 480), |options| options.encoding = Some("millimetre".into())).unwrap();
     assert_eq!(frame.sensor.measure.depth_m(5000.0), Some(5.0));
+}
+
+/// The camera [`VGA`] in JSON, with more beside it.
+fn json(more: &str) -> String {
+    format!(r#"{{"fx": 525, "fy": 526, "cx": 319.5, "cy": 239.5, "width": 640, "height": 480, {more}}}"#)
+}
+
+#[test]
+fn the_unit_is_read_under_every_name_whose_meaning_is_sure_and_noted_under_others() {
+    for (more, right) in [
+        (r#""depth_scale": 0.1"#, 1e-4),
+        (r#""depth_scale": 1.0"#, 1e-3),
+        (r#""depth_scale": 0.001"#, 1e-3),
+        (r#""depth_scale": 0.00025"#, 2.5e-4),
+        (r#""depth_scale": 1000"#, 1e-3),
+        (r#""scale": 6553.5"#, 1.0 / 6553.5),
+        (r#""png_depth_scale": 6553.5"#, 1.0 / 6553.5),
+        (r#""depth_unit_scale_factor": 0.0002"#, 2e-4),
+        (r#""scaling_factor": 5000"#, 2e-4),
+        (r#""depth_scaling_factor": 4000.0"#, 2.5e-4),
+        (r#""units_per_meter": 8000"#, 1.25e-4),
+        (r#""DepthMapFactor": 5000"#, 2e-4),
+    ] {
+        let camera = parse(&json(more)).unwrap();
+        let unit_m = camera.unit_m.unwrap_or_else(|| panic!("{more}"));
+        assert!((unit_m - right).abs() < 1e-12 && camera.notes.is_empty(), "{more}: {unit_m} {:?}", camera.notes);
+    }
+    let bop = r#"{"0": {"cam_K": [525, 0, 319.5, 0, 526, 239.5, 0, 0, 1], "depth_scale": 0.1}}"#;
+    assert!((parse(bop).unwrap().unit_m.unwrap() - 1e-4).abs() < 1e-12);
+    for (more, name) in
+        [(r#""depth_scaling_factor": 0.3"#, "depth_scaling_factor"), (r#""depth_units": 1"#, "depth_units")]
+    {
+        let camera = parse(&json(more)).unwrap();
+        assert!(camera.unit_m.is_none() && camera.notes.iter().any(|note| note.contains(name)), "{:?}", camera.notes);
+    }
+    assert!(parse(&json(r#""scale": 1"#)).unwrap().notes.is_empty());
+}
+
+#[test]
+fn models_that_are_no_pinhole_are_refused_by_name_and_fisheyes_are_fisheyes() {
+    for (key, model) in [
+        ("camera_type", "ds"),
+        ("camera_type", "eucm"),
+        ("model", "ucm"),
+        ("camera_model", "omni"),
+        ("model_type", "MEI"),
+        ("projection_model", "equirectangular"),
+    ] {
+        let text = json(&format!(r#""distortion_model": "radtan", "{key}": "{model}", "xi": -0.2"#));
+        let error = parse(&text).unwrap_err().to_string();
+        assert!(error.contains(&format!("`{model}`")), "{error}");
+    }
+    let basalt = |model: &str, rest: &str| {
+        format!(
+            r#"{{"value0": {{"intrinsics": [{{"camera_type": "{model}", "intrinsics": {{"fx": 525, "fy": 526, "cx": 319.5, "cy": 239.5, {rest}}}}}], "resolution": [[640, 480]]}}}}"#
+        )
+    };
+    let error = parse(&basalt("ds", r#""xi": -0.2, "alpha": 0.6"#)).unwrap_err().to_string();
+    assert!(error.contains("`ds`"), "{error}");
+    let kalibr = "cam0:\n  camera_model: omni\n  distortion_model: radtan\n  distortion_coeffs: [0.1, 0, 0, 0]\n  intrinsics: [1.2, 525, 526, 319.5, 239.5]\n";
+    let error = parse(kalibr).unwrap_err().to_string();
+    assert!(error.contains("`omni`"), "{error}");
+    let opencv = "%YAML:1.0\n---\nimage_width: 640\nimage_height: 480\nfisheye_model: 1\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ 525., 0., 319.5, 0., 526., 239.5, 0., 0., 1. ]\ndistortion_coefficients: !!opencv-matrix\n   rows: 4\n   cols: 1\n   dt: d\n   data: [ 0.05, -0.01, 0.004, -0.001 ]\n";
+    let vins = "%YAML:1.0\n---\nmodel_type: KANNALA_BRANDT\nimage_width: 640\nimage_height: 480\nprojection_parameters:\n   k2: 0.05\n   k3: -0.01\n   k4: 0.004\n   k5: -0.001\n   mu: 525\n   mv: 526\n   u0: 319.5\n   v0: 239.5\n";
+    let lens = r#""k1": 0.05, "k2": -0.01, "k3": 0.004, "k4": -0.001"#;
+    let ngp = json(&format!(r#""is_fisheye": true, "camera_model": "OPENCV", {lens}"#));
+    for text in [opencv, vins, &ngp, &basalt("kb4", lens)] {
+        let camera = parse(text).unwrap();
+        assert!(close(camera.intrinsics, VGA) && camera.size == Some((640, 480)), "{text}");
+        let distortion = camera.distortion.unwrap();
+        assert_eq!(distortion.model(), DistortionModel::KannalaBrandt, "{text}");
+        assert_eq!(distortion.coefficients()[..4], [0.05, -0.01, 0.004, -0.001], "{text}");
+    }
+    let off = parse(&json(&format!(r#""is_fisheye": false, {lens}"#))).unwrap();
+    assert_eq!(off.distortion.unwrap().model(), DistortionModel::BrownConrady);
+}
+
+#[test]
+fn the_note_on_several_cameras_names_the_others() {
+    let of = |name: &str, fx: f64| format!(r#""{name}": {{"fx": {fx}, "fy": {fx}, "cx": 319.5, "cy": 239.5}}"#);
+    for text in [
+        format!("{{{}, {}}}", of("color", 600.0), of("depth", 525.0)),
+        format!("{{{}, {}}}", of("depth", 525.0), of("color", 600.0)),
+    ] {
+        let camera = parse(&text).unwrap();
+        assert_eq!(camera.intrinsics.fx, 525.0);
+        assert!(camera.notes.iter().any(|note| note.ends_with("`depth` is taken, not `color`")), "{:?}", camera.notes);
+    }
+}
+
+#[test]
+fn the_camera_of_record3d_is_scaled_to_its_depth_maps() {
+    let text = r#"{"w": 960, "h": 720, "dw": 256, "dh": 192, "fps": 60, "K": [720, 0, 0, 0, 720, 0, 479.5, 359.5, 1]}"#;
+    let frame = framed(text, (256, 192), |_| ()).unwrap();
+    assert!(close(frame.sensor.intrinsics.unwrap(), [192.0, 192.0, 127.5, 95.5]));
+    assert!(
+        frame.warnings.iter().any(|note| note.contains("960 x 720") && note.contains("dw")),
+        "{:?}",
+        frame.warnings
+    );
+    let frame = framed(text, (960, 720), |_| ()).unwrap();
+    assert!(close(frame.sensor.intrinsics.unwrap(), [720.0, 720.0, 479.5, 359.5]));
+    let mut options = ReadOptions::default().camera(&parse(text).unwrap());
+    options.encoding = None;
+    assert!(decode(&map(640, 480), "map", &options).is_err());
+}
+
+#[test]
+fn what_is_no_camera_file_is_called_what_it_looks_like() {
+    for (text, what) in [
+        ("<!DOCTYPE html>\n<html><body>Not found</body></html>", "web page"),
+        ("version https://git-lfs.github.com/spec/v1\noid sha256:ab\nsize 12\n", "Git LFS"),
+        ("ply\nformat ascii 1.0\nelement vertex 3\n", "point cloud"),
+        ("The camera was lent to a friend.\nAsk there.\n", "text without names"),
+        ("1.0 0.1 0.2 0.3 0 0 0 1\n2.0 0.1 0.2 0.3 0 0 0 1\n3.0 0.1 0.2 0.3 0 0 0 1\n", "3 lines of 8 numbers"),
+    ] {
+        let error = parse(text).unwrap_err().to_string();
+        assert!(error.contains(what) && !error.contains("no YAML"), "{error}");
+    }
 }
 
 #[test]

@@ -175,9 +175,27 @@ pub(super) fn model(name: &str) -> Option<DistortionModel> {
     }
 }
 
+/// Refuses a model whose `fx` is no pinhole's focal length, whatever its coefficients.
+///
+/// # Errors
+/// [`Error::Unreadable`] with its name.
+pub(super) fn refuse_no_pinhole(name: &str) -> Result<()> {
+    let short: String = name.to_lowercase().chars().filter(char::is_ascii_alphanumeric).collect();
+    let is = ["ds", "ucm", "eucm", "mei", "omni", "cata", "ocam"].contains(&short.as_str());
+    let parts = ["doublesphere", "unified", "omni", "catadioptric", "scaramuzza", "equirect", "spherical", "panoram"];
+    let starts = ["eucm", "ucm", "ds-", "omni"].iter().any(|start| name.to_lowercase().starts_with(start));
+    if is || starts || parts.iter().any(|part| short.contains(part)) {
+        return Err(unreadable(format!(
+            "its camera model `{name}` is no pinhole, and its numbers are not those of one; undistort the map to a pinhole camera, and              give that camera"
+        )));
+    }
+    Ok(())
+}
+
 /// A camera with coefficients of a named model, of which `rectified` says what the map is taken for. What is not known is
 /// noted.
 pub(super) fn with_lens(camera: CameraFile, name: &str, coefficients: &[f64], rectified: bool) -> Result<CameraFile> {
+    refuse_no_pinhole(name)?;
     if coefficients.iter().all(|&k| k == 0.0) && model(name) != Some(DistortionModel::KannalaBrandt) {
         return Ok(camera);
     }

@@ -5,7 +5,7 @@ use std::cell::OnceCell;
 use serde_json::Value;
 
 use super::camera::CameraFile;
-use super::{xml, yaml};
+use super::{assign, xml, yaml};
 use crate::error::Result;
 
 /// One form of camera files.
@@ -22,7 +22,7 @@ pub struct CameraForm {
     pub(super) parse: fn(&Document<'_>) -> Result<CameraFile>,
 }
 
-/// The text of a file, and its tree if it is JSON or YAML.
+/// The text of a file, and its tree if it is JSON, YAML, XML or lines of `key = value`.
 pub(super) struct Document<'a> {
     pub(super) text: &'a str,
     tree: OnceCell<std::result::Result<Value, String>>,
@@ -43,9 +43,16 @@ impl<'a> Document<'a> {
     pub(super) fn read(&self) -> &std::result::Result<Value, String> {
         self.tree.get_or_init(|| match serde_json::from_str(self.text) {
             Ok(tree) => Ok(tree),
-            Err(error) if self.is_json() => Err(error.to_string()),
+            // Python prints maps that are no JSON.
+            Err(error) if self.is_json() => yaml::parse(self.text).map_err(|_| error.to_string()),
             Err(_) if self.text.starts_with('<') => xml::parse(self.text),
-            Err(_) => yaml::parse(self.text),
+            Err(_) => {
+                let lines = assign::parse(self.text).or_else(|| assign::table(self.text));
+                // `width: 640, height: 480, fx: 525` on one line.
+                let is_line = self.text.lines().count() == 1 && self.text.matches(": ").count() > 1;
+                let line = || is_line.then(|| yaml::parse(&format!("{{{}}}", self.text)).ok()).flatten();
+                lines.or_else(line).map_or_else(|| yaml::parse(self.text), Ok)
+            }
         })
     }
 

@@ -2,6 +2,7 @@
 //!
 //! In: the text of a file of any of the [`FORMS`], told apart by content. Out: a [`CameraFile`]. What is ambiguous is refused with what was found.
 
+mod assign;
 mod azure;
 mod camera;
 mod colmap;
@@ -9,13 +10,17 @@ mod depthai;
 mod form;
 mod kitti;
 mod lines;
+mod matlab;
 mod middlebury;
 mod mvsnet;
 mod nerf;
 mod orbslam;
+mod ost;
 mod realsense;
+mod scannet;
 mod text;
 mod tree;
+mod unit;
 mod xml;
 mod yaml;
 mod zed;
@@ -69,8 +74,43 @@ pub const FORMS: &[CameraForm] = &[
         mvsnet::parse,
     ),
     form(
+        "scannet",
+        "ScanNet's scene*.txt, and _info.txt of its reader of .sens; the depth camera",
+        "depthWidth = 640\ndepthHeight = 480\nfx_depth = 577.6\nfy_depth = 578.7\nmx_depth = 318.9\nmy_depth = 242.7",
+        scannet::recognise,
+        scannet::parse,
+    ),
+    form(
+        "ost",
+        "camera_calibration's ost.txt; the first camera",
+        "[image]\n\nwidth\n640\n\nheight\n480\n\n[narrow_stereo]\n\ncamera matrix\n525 0 319.5\n0 525 239.5\n0 0 1",
+        ost::recognise,
+        ost::parse,
+    ),
+    form(
+        "matlab",
+        "what Matlab shows of `cameraParameters` and `cameraIntrinsics`, and `IntrinsicMatrix`; its pixel centres begin at 1",
+        "FocalLength: [525 525]\nPrincipalPoint: [320.5 240.5]\nImageSize: [480 640]",
+        matlab::recognise,
+        matlab::parse,
+    ),
+    form(
+        "bouguet",
+        "Calib_Results.m of Bouguet's toolbox",
+        "fc = [ 525 ; 525 ];\ncc = [ 319.5 ; 239.5 ];\nkc = [ 0 ; 0 ; 0 ; 0 ; 0 ];\nnx = 640;\nny = 480;",
+        matlab::recognise_bouguet,
+        matlab::parse_bouguet,
+    ),
+    form(
+        "realsense-python",
+        "what Python prints of RealSense's intrinsics",
+        "[ 640x480  p[319.5 239.5]  f[525 525]  Brown Conrady [0 0 0 0 0] ]",
+        realsense::recognise_printed,
+        realsense::parse_printed,
+    ),
+    form(
         "numbers",
-        "`fx,fy,cx,cy`, or a 3 x 3, 3 x 4 or 4 x 4 matrix (ScanNet, ICL-NUIM, NumPy, Matlab); FoundationStereo's K.txt with the baseline in metres below; TUM's `fx fy cx cy` and coefficients",
+        "`fx,fy,cx,cy`, or a 3 x 3, 3 x 4 or 4 x 4 matrix (ScanNet, ICL-NUIM, NumPy, Matlab); FoundationStereo's K.txt with the baseline in metres below; TUM's `fx fy cx cy` and coefficients; ARKitScenes' .pincam, `width height fx fy cx cy`",
         "525,525,319.5,239.5",
         text::recognise,
         text::parse,
@@ -119,7 +159,7 @@ pub const FORMS: &[CameraForm] = &[
     ),
     form(
         "json-yaml",
-        "JSON and YAML of any nesting: ROS CameraInfo and camera_calibration, OpenCV FileStorage, Open3D, BOP, RealSense, nerf (`fl_x`), Kalibr (cam0), Record3D, ARKit, and others that name `fx`, `K`, `camera_matrix` or `intrinsics`; matrices row by row or column by column. Of several that differ the one for depth, or the left one",
+        "JSON, YAML, XML, TOML and lines of `key = value`, of any nesting, and a table with a line of names: ROS CameraInfo and camera_calibration, OpenCV FileStorage, Open3D, BOP, RealSense, nerf (`fl_x`), Kalibr (cam0), Record3D, ARKit, and others that name `fx`, `K`, `camera_matrix` or `intrinsics`; matrices row by row or column by column. Of several that differ the one for depth, or the left one",
         r#"{"width": 640, "height": 480, "fx": 525, "fy": 525, "ppx": 319.5, "ppy": 239.5}"#,
         is_tree,
         parse_tree,
@@ -188,11 +228,41 @@ pub fn parse(text: &str) -> Result<CameraFile> {
 /// As [`parse`].
 pub fn parse_as(text: &str) -> Result<(CameraFile, &'static CameraForm)> {
     let document = Document::new(text);
+    if is_web_page(document.text) {
+        return Err(unreadable("it is a web page: was a download page saved in place of the file?"));
+    }
     match FORMS.iter().find(|form| (form.recognise)(&document)) {
         Some(form) => Ok(((form.parse)(&document)?, form)),
         None => Err(match document.read() {
-            Err(wrong) if !document.text.is_empty() => unreadable(wrong.clone()),
+            Err(wrong) if document.is_json() => unreadable(wrong.clone()),
+            Err(wrong) if !document.text.is_empty() => {
+                unreadable(looks_like(document.text).map_or_else(|| wrong.clone(), str::to_string))
+            }
             _ => unreadable("it has no camera of a form known here"),
         }),
+    }
+}
+
+fn is_web_page(text: &str) -> bool {
+    let start = text.chars().take(20).collect::<String>().to_lowercase();
+    start.starts_with("<!doctype html") || start.starts_with("<html")
+}
+
+/// What a text that is no camera file seems to be.
+fn looks_like(text: &str) -> Option<&'static str> {
+    let begins = |starts: &[&str]| starts.iter().any(|start| text.starts_with(start));
+    let has = |parts: &[&str]| parts.iter().any(|part| text.contains(part));
+    if begins(&["version https://git-lfs"]) {
+        Some("it is a pointer of Git LFS: fetch the file itself with `git lfs pull`")
+    } else if begins(&["ply\n", "ply\r", "# .PCD", "solid "]) {
+        Some("it is a point cloud or a mesh")
+    } else if has(&["#include", "int main(", "def ", "import numpy", "function ["]) {
+        Some("it is the source of a program")
+    } else if text.contains('\0') {
+        Some("it is not text")
+    } else if text.lines().any(|line| line.contains(": ") || line.contains('=')) {
+        None
+    } else {
+        Some("it is text without names and values of a camera, such as `fx: 525`")
     }
 }

@@ -3,6 +3,7 @@
 use super::camera::{CameraFile, pinhole, size, unreadable, with_lens};
 use super::form::Document;
 use super::lines::{number, numbers, pairs};
+use super::tree::words;
 use crate::error::Result;
 
 pub(super) fn recognise(document: &Document<'_>) -> bool {
@@ -55,4 +56,31 @@ fn camera(block: &str) -> Result<CameraFile> {
     let model = text("distorsion").or(text("distortion")).or(text("model")).unwrap_or("");
     let coefficients = numbers(block, "coeffs").or(numbers(block, "coefficients")).unwrap_or_default();
     with_lens(camera, model, &coefficients, false)
+}
+
+/// What Python prints of intrinsics: `[ 640x480  p[319.5 239.5]  f[525 525]  Brown Conrady [0 0 0 0 0] ]`.
+fn printed(text: &str) -> Option<(Vec<f64>, [Vec<f64>; 2], String, Vec<f64>)> {
+    let start = text.find("[ ")?;
+    let (sides, rest) = text[start + 2..].trim_start().split_once("p[")?;
+    let (centre, rest) = rest.split_once(']')?;
+    let (focals, rest) = rest.trim_start().strip_prefix("f[")?.split_once(']')?;
+    let (model, rest) = rest.split_once('[')?;
+    let (coefficients, _) = rest.split_once(']')?;
+    let sides = words(&sides.replace('x', " "))?;
+    Some((sides, [words(centre)?, words(focals)?], model.trim().to_string(), words(coefficients)?))
+}
+
+pub(super) fn recognise_printed(document: &Document<'_>) -> bool {
+    printed(document.text).is_some()
+}
+
+pub(super) fn parse_printed(document: &Document<'_>) -> Result<CameraFile> {
+    let Some((sides, [centre, focals], model, coefficients)) = printed(document.text) else {
+        return Err(unreadable("it is not what Python prints of RealSense's intrinsics"));
+    };
+    let (&[width, height], &[cx, cy], &[fx, fy]) = (&sides[..], &centre[..], &focals[..]) else {
+        return Err(unreadable("size, p[] and f[] are not two numbers each"));
+    };
+    let camera = pinhole(fx, fy, cx, cy)?.size(size(Some(width), Some(height)));
+    with_lens(camera, &model, &coefficients, false)
 }

@@ -1,6 +1,6 @@
 //! Numbers alone: `fx,fy,cx,cy`, matrices as text, FoundationStereo's K.txt, and matrices with a name, as in Matlab.
 
-use super::camera::{CameraFile, matrix, pinhole, unreadable, with_lens};
+use super::camera::{CameraFile, matrix, pinhole, size, unreadable, with_lens};
 use super::form::Document;
 use super::tree::words;
 use crate::encoding::Stereo;
@@ -51,6 +51,16 @@ pub(super) fn parse(document: &Document<'_>) -> Result<CameraFile> {
             let stereo = Some(Stereo { focal_px: camera.intrinsics.fx, baseline_m, doffs_px: 0.0 });
             Ok(CameraFile { stereo, ..camera })
         }
+        // ARKitScenes' .pincam: width height fx fy cx cy.
+        [width, height, fx, fy, cx, cy] if lines.len() == 1 => {
+            let is_middle = |c: f64, side: f64| (0.25..0.75).contains(&(c / side));
+            match size(Some(width), Some(height)) {
+                Some(size) if is_middle(cx, width) && is_middle(cy, height) => {
+                    Ok(pinhole(fx, fy, cx, cy)?.size(Some(size)))
+                }
+                _ => Err(unreadable("six numbers that are not width, height, fx, fy, cx, cy")),
+            }
+        }
         // TUM: fx fy cx cy and coefficients on one line.
         [fx, fy, cx, cy, ..] if lines.len() == 1 && (8..=9).contains(&all.len()) && is_pinhole_with_lens(&all) => {
             with_lens(pinhole(fx, fy, cx, cy)?, "", &all[4..], false)
@@ -68,6 +78,11 @@ pub(super) fn parse(document: &Document<'_>) -> Result<CameraFile> {
                 _ => Ok(camera),
             }
         }
+        _ if lines.len() > 2 && lines.iter().all(|line| line.len() == lines[0].len()) => Err(unreadable(format!(
+            "{} lines of {} numbers: a list of poses, points or time stamps",
+            lines.len(),
+            lines[0].len()
+        ))),
         _ => {
             Err(unreadable(format!("{} numbers; 4 (fx,fy,cx,cy), or 9, 12 or 16 of a matrix are expected", all.len())))
         }

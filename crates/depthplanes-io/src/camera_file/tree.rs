@@ -6,15 +6,16 @@
 
 use serde_json::{Map, Value};
 
-use super::camera::{CameraFile, matrix, pinhole, size, unreadable, with_lens};
+use super::camera::{CameraFile, matrix, pinhole, refuse_no_pinhole, size, unreadable, with_lens};
+use super::unit::unit_m;
 use crate::encoding::Stereo;
 use crate::error::Result;
 
 type Object = Map<String, Value>;
 
 const FOCAL: [&[&str]; 2] = [
-    &["fx", "flx", "focalx", "focallengthx", "alphax", "ffx"],
-    &["fy", "fly", "focaly", "focallengthy", "alphay", "ffy"],
+    &["fx", "flx", "focalx", "focallengthx", "alphax", "ffx", "mu"],
+    &["fy", "fly", "focaly", "focallengthy", "alphay", "ffy", "mv"],
 ];
 const BOTH_FOCALS: &[&str] = &["f", "focal", "focallength", "focallengths", "fl"];
 const CENTRE: [&[&str]; 2] = [
@@ -71,7 +72,12 @@ const MODELS: &[&str] = &[
     "cameramodel",
     "cameratype",
     "projectionmodel",
+    "modeltype",
+    "projectiontype",
 ];
+
+/// Flags that the coefficients are those of OpenCV's fisheye.
+const FISHEYE: &[&str] = &["isfisheye", "fisheyemodel", "fisheye", "usefisheyemodel"];
 
 /// A name without case and signs.
 pub(super) fn plain(name: &str) -> String {
@@ -148,14 +154,35 @@ pub(super) fn parse(root: &Value) -> Result<CameraFile> {
     }
 }
 
-/// What a tree has at its root, for a message.
+/// What a tree has at its root, and the camera models that it names, for a message.
 fn names_of(root: &Value) -> String {
-    match root {
+    let mut text = match root {
         Value::Object(object) if !object.is_empty() => {
             let names: Vec<&str> = object.keys().take(8).map(String::as_str).collect();
             format!("; it states {}", names.join(", "))
         }
         _ => String::new(),
+    };
+    let mut named = Vec::new();
+    models_of(root, &mut named);
+    if !named.is_empty() {
+        text.push_str(&format!("; its camera models are {}", named.join(", ")));
+    }
+    text
+}
+
+fn models_of(value: &Value, named: &mut Vec<String>) {
+    match value {
+        Value::Array(items) => items.iter().take(100).for_each(|item| models_of(item, named)),
+        Value::Object(object) => {
+            for name in models(object).map(|name| format!("`{name}`")) {
+                if named.len() < 5 && !named.contains(&name) {
+                    named.push(name);
+                }
+            }
+            object.values().for_each(|value| models_of(value, named));
+        }
+        _ => (),
     }
 }
 
@@ -318,6 +345,9 @@ fn complete(camera: CameraFile, object: &Object, above: &[&Object], key: Option<
     let centre = [camera.intrinsics.cx, camera.intrinsics.cy];
     let mut camera = camera.size(above.iter().rev().find_map(|object| size_of(object, centre)));
     let near: Vec<&Object> = above.iter().rev().copied().collect();
+    for name in near.iter().take(2).flat_map(|object| models(object)) {
+        refuse_no_pinhole(name)?;
+    }
     if let Some(key) = key {
         let model = model_of(&near);
         let above = || near.get(1).and_then(|object| lens(object, &model));
@@ -325,13 +355,46 @@ fn complete(camera: CameraFile, object: &Object, above: &[&Object], key: Option<
         camera = with_lens(camera, &model, &coefficients, false)?;
     }
     binned(&mut camera, object);
-    camera.unit_m = near.iter().find_map(|object| unit_m(object));
+    match near.iter().find_map(|object| unit_m(object)) {
+        Some(Ok(unit_m)) => camera.unit_m = Some(unit_m),
+        Some(Err(note)) => camera.notes.push(note),
+        None => (),
+    }
     if camera.stereo.is_none() {
         let baseline = number_of(object, &["baseline", "baselinem", "stereob"]).filter(|&b| b > 0.0 && b < 5.0);
         let focal_px = camera.intrinsics.fx.abs();
         camera.stereo = baseline.map(|baseline_m| Stereo { focal_px, baseline_m, doffs_px: 0.0 });
     }
-    Ok(camera)
+    Ok(for_depth_size(camera, object))
+}
+
+/// Record3D states the size of the depth map, dw x dh, beside that of the picture, which the camera is for.
+fn for_depth_size(camera: CameraFile, object: &Object) -> CameraFile {
+    let depth = size(number_of(object, &["dw"]), number_of(object, &["dh"]));
+    let (Some(own), Some(depth)) = (camera.size, depth) else { return camera };
+    let scale = [depth.0 as f64 / own.0 as f64, depth.1 as f64 / own.1 as f64];
+    if own == depth || (scale[0] / scale[1] - 1.0).abs() > 0.03 {
+        return camera;
+    }
+    let note = format!(
+        "the camera, stated for {} x {} pixels, is scaled to the depth map's {} x {} (dw, dh)",
+        own.0, own.1, depth.0, depth.1
+    );
+    let mut scaled = CameraFile { size: Some(depth), ..camera.clone() }.note(note);
+    let apply = |camera: &mut depthplanes::Intrinsics| {
+        camera.fx *= scale[0];
+        camera.fy *= scale[1];
+        camera.cx = (camera.cx + 0.5) * scale[0] - 0.5;
+        camera.cy = (camera.cy + 0.5) * scale[1] - 0.5;
+    };
+    apply(&mut scaled.intrinsics);
+    if let Some((other, _)) = &mut scaled.otherwise {
+        apply(other);
+    }
+    if let Some(rig) = &mut scaled.stereo {
+        rig.focal_px *= scale[0];
+    }
+    CameraFile { choices: vec![camera.clone(), scaled], ..camera }
 }
 
 /// Columns and rows. Of a pair, of which programs write either first, the order that the principal point suits better.
@@ -382,13 +445,29 @@ fn lens(object: &Object, model: &str) -> Option<Vec<f64>> {
         return None;
     }
     if super::camera::model(model) == Some(depthplanes::DistortionModel::KannalaBrandt) {
+        // camodocal counts from k2, beside its `mu` and `mv`.
+        if get(object, &["mu"]).is_some() {
+            return Some([1, 4, 5, 6].map(|at| values[at].unwrap_or(0.0)).to_vec());
+        }
         return Some([0, 1, 4, 5].map(|at| values[at].unwrap_or(0.0)).to_vec());
     }
     Some(values.map(|value| value.unwrap_or(0.0)).to_vec())
 }
 
+/// The names of models that an object states.
+fn models(object: &Object) -> impl Iterator<Item = &str> {
+    let is_model = |key: &str| MODELS.contains(&plain(key).as_str());
+    let is_word = |text: &&str| !text.is_empty() && text.len() < 60 && words(text).is_none();
+    object.iter().filter(move |(key, _)| is_model(key)).filter_map(|(_, value)| value.as_str()).filter(is_word)
+}
+
 /// The name of the model, as near as it is stated; empty if it is not.
 fn model_of(near: &[&Object]) -> String {
+    let is_on = |value: &Value| value.as_bool().unwrap_or_else(|| number(value) == Some(1.0));
+    let is_fisheye = |object: &&Object| get(object, FISHEYE).is_some_and(is_on);
+    if near.iter().take(2).any(is_fisheye) {
+        return "fisheye".into();
+    }
     let named = |object: &&Object| {
         MODELS.iter().find_map(|name| match get(object, &[name])? {
             Value::String(name) if words(name).is_none() && !name.is_empty() => Some(name.clone()),
@@ -409,23 +488,6 @@ fn model_of(near: &[&Object]) -> String {
         })
     };
     near.iter().take(2).find_map(named).unwrap_or_default()
-}
-
-/// Metres per unit of maps. BOP's scale makes millimetres; others make metres, or are units in a metre.
-fn unit_m(object: &Object) -> Option<f64> {
-    if let Some(units) = number_of(object, &["depthmapfactor", "depthfactor"]) {
-        return (units > 0.0).then(|| units.recip());
-    }
-    let scale = number_of(object, &["depthscale", "depthunits", "depthunit", "integerdepthscale"])
-        .filter(|&scale| scale > 0.0)?;
-    if get(object, &["camk"]).is_some() || get(object, &["cx"]).is_some() && scale == 1.0 {
-        return Some(0.001 * scale);
-    }
-    match scale {
-        ..=0.05 => Some(scale),
-        100.0.. => Some(scale.recip()),
-        _ => None,
-    }
 }
 
 /// The one camera of those found.
@@ -458,16 +520,12 @@ fn one_of(mut found: Vec<Found>) -> Result<CameraFile> {
             choice.ok_or_else(|| several(&found, &distinct))?
         }
     };
+    let others: Vec<String> =
+        distinct.iter().filter(|&&at| at != taken).take(5).map(|&at| format!("`{}`", found[at].path)).collect();
     let Found { path, camera } = found.swap_remove(taken);
-    if distinct.len() == 1 {
+    if others.is_empty() {
         return Ok(camera);
     }
-    let others: Vec<&str> = distinct
-        .iter()
-        .filter(|&&at| at != taken)
-        .filter_map(|&at| Some(found.get(at)?.path.as_str()))
-        .take(5)
-        .collect();
     let note = format!("of {} cameras `{path}` is taken, not {}", distinct.len(), others.join(", "));
     Ok(camera.named(path).note(note))
 }

@@ -1,0 +1,52 @@
+//! Metres per unit of maps, under the names that programs give to it.
+
+use serde_json::{Map, Value};
+
+use super::tree::{get, number};
+
+/// Names of units in a metre.
+const PER_METRE: &[&str] = &["depthmapfactor", "depthfactor", "unitspermeter", "unitspermetre"];
+
+/// Names that some programs use for metres per unit and others for units in a metre.
+const EITHER: &[&str] = &[
+    "depthscale",
+    "pngdepthscale",
+    "depthunits",
+    "depthunit",
+    "integerdepthscale",
+    "depthunitscalefactor",
+    "depthscalefactor",
+    "depthscalingfactor",
+    "scalingfactor",
+];
+
+/// Metres per unit as an object states it; a note where what is meant is not sure. BOP's scale makes millimetres.
+pub(super) fn unit_m(object: &Map<String, Value>) -> Option<Result<f64, String>> {
+    let of = |names: &[&str]| get(object, names).and_then(number).filter(|&value| value > 0.0);
+    if let Some(units) = of(PER_METRE) {
+        return Some(Ok(units.recip()));
+    }
+    // BOP: beside `cam_K`, or in camera.json beside the camera. A thousandth there is metres, as RealSense has it.
+    if let Some(scale) = of(&["depthscale"]) {
+        let least = if get(object, &["camk"]).is_some() { 0.01 } else { 0.05 };
+        let is_beside = ["camk", "cx"].iter().any(|name| get(object, &[name]).is_some());
+        if is_beside && (least..=1.5).contains(&scale) {
+            return Some(Ok(0.001 * scale));
+        }
+    }
+    if let Some((name, value)) = EITHER.iter().find_map(|name| Some((name, of(&[name])?))) {
+        let key = object.keys().find(|key| super::tree::plain(key) == **name).map_or(*name, String::as_str);
+        return Some(match value {
+            ..=0.05 => Ok(value),
+            1.5.. => Ok(value.recip()),
+            1.0 if *name == "depthunitscalefactor" => Ok(1.0),
+            _ => Err(format!(
+                "`{key}` of the camera file is {value}, which may be metres, millimetres or units in a metre, and is not used; \
+                 --scale states metres per unit"
+            )),
+        });
+    }
+    // Replica and NICE-SLAM: 6553.5 units in a metre, beside the camera. Other scales are not of the map.
+    let is_camera = get(object, &["fx"]).is_some();
+    of(&["scale"]).filter(|&scale| is_camera && scale >= 100.0).map(|scale| Ok(scale.recip()))
+}
