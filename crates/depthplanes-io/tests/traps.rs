@@ -334,7 +334,8 @@ fn disparity_of_16_bits_says_its_unit() {
     let rig = Stereo { focal_px: 115.2, baseline_m: 0.3, doffs_px: 0.0 };
     let options = ReadOptions { disparity: true, stereo: Some(rig), ..camera() };
     let disparity = |depth: f64| 115.2 * 0.3 / depth;
-    let matched = |at: usize, depth: f64| if at % 16 == 0 { 65_520.0 } else { (16.0 * disparity(depth)).round() };
+    let matched =
+        |at: usize, depth: f64| if at.is_multiple_of(16) { 65_520.0 } else { (16.0 * disparity(depth)).round() };
     let frame = read(&counts(matched), &options);
     assert_eq!(frame.encoding, "opencv");
     noted("unsigned", &frame, &["`opencv`", "--scale"]);
@@ -424,7 +425,7 @@ fn cameras_of_turned_and_cut_pictures_are_noticed() {
     let of = |cx, cy| ReadOptions { intrinsics: Some(depthplanes::Intrinsics { cx, cy, ..CAMERA }), ..camera() };
     let turned = read(&counts(millimetres), &of((height - 1.0) / 2.0, (width - 1.0) / 2.0));
     noted("turned", &turned, &["exchanged", "turned by 90 degrees"]);
-    let bytes = [format!("P5 640 360 65535\n").into_bytes(), [7, 208].repeat(640 * 360)].concat();
+    let bytes = [b"P5 640 360 65535\n".to_vec(), [7, 208].repeat(640 * 360)].concat();
     let options = ReadOptions {
         intrinsics: Some(depthplanes::Intrinsics { fx: 576.0, fy: 576.0, cx: 319.5, cy: 239.5 }),
         ..Default::default()
@@ -434,6 +435,7 @@ fn cameras_of_turned_and_cut_pictures_are_noticed() {
 
 #[test]
 fn pixels_that_stand_apart_are_named() {
-    let bytes = counts(|at, depth| if at % 4 == 0 && at / SIZE[0] % 4 == 0 { 1000.0 * depth } else { 0.0 });
+    let bytes =
+        counts(|at, depth| if at.is_multiple_of(4) && (at / SIZE[0]).is_multiple_of(4) { 1000.0 * depth } else { 0.0 });
     noted("one of 16", &read(&bytes, &camera()), &["stand apart"]);
 }
