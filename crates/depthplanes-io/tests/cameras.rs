@@ -105,7 +105,7 @@ const SPECIMENS: &[Specimen] = &[
     ("json-yaml", "fx,fy,cx,cy\n525,526,319.5,239.5\n", VGA, None),
     (
         "json-yaml",
-        "# width height fx fy cx cy\n640 480 525 526 319.5 239.5\n640 480 525 526 319.5 239.5\n",
+        "width height fx fy cx cy\n640 480 525 526 319.5 239.5\n640 480 525 526 319.5 239.5\n",
         VGA,
         Some((640, 480)),
     ),

@@ -58,16 +58,17 @@ fn camera(block: &str) -> Result<CameraFile> {
     with_lens(camera, model, &coefficients, false)
 }
 
-/// What Python prints of intrinsics: `[ 640x480  p[319.5 239.5]  f[525 525]  Brown Conrady [0 0 0 0 0] ]`.
-fn printed(text: &str) -> Option<(Vec<f64>, [Vec<f64>; 2], String, Vec<f64>)> {
+/// What Python prints of intrinsics: `[ 640x480  p[319.5 239.5]  f[525 525]  Brown Conrady [0 0 0 0 0] ]`: the
+/// numbers before the model, the model, and its coefficients.
+fn printed(text: &str) -> Option<(Vec<f64>, &str, Vec<f64>)> {
     let start = text.find("[ ")?;
     let (sides, rest) = text[start + 2..].trim_start().split_once("p[")?;
     let (centre, rest) = rest.split_once(']')?;
     let (focals, rest) = rest.trim_start().strip_prefix("f[")?.split_once(']')?;
     let (model, rest) = rest.split_once('[')?;
     let (coefficients, _) = rest.split_once(']')?;
-    let sides = words(&sides.replace('x', " "))?;
-    Some((sides, [words(centre)?, words(focals)?], model.trim().to_string(), words(coefficients)?))
+    let numbers = words(&format!("{} {centre} {focals}", sides.replace('x', " ")))?;
+    Some((numbers, model.trim(), words(coefficients)?))
 }
 
 pub(super) fn recognise_printed(document: &Document<'_>) -> bool {
@@ -75,12 +76,12 @@ pub(super) fn recognise_printed(document: &Document<'_>) -> bool {
 }
 
 pub(super) fn parse_printed(document: &Document<'_>) -> Result<CameraFile> {
-    let Some((sides, [centre, focals], model, coefficients)) = printed(document.text) else {
+    let Some((numbers, model, coefficients)) = printed(document.text) else {
         return Err(unreadable("it is not what Python prints of RealSense's intrinsics"));
     };
-    let (&[width, height], &[cx, cy], &[fx, fy]) = (&sides[..], &centre[..], &focals[..]) else {
+    let &[width, height, cx, cy, fx, fy] = &numbers[..] else {
         return Err(unreadable("size, p[] and f[] are not two numbers each"));
     };
     let camera = pinhole(fx, fy, cx, cy)?.size(size(Some(width), Some(height)));
-    with_lens(camera, &model, &coefficients, false)
+    with_lens(camera, model, &coefficients, false)
 }
