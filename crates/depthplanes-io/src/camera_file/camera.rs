@@ -186,7 +186,8 @@ pub(super) fn refuse_no_pinhole(name: &str) -> Result<()> {
     let starts = ["eucm", "ucm", "ds-", "omni"].iter().any(|start| name.to_lowercase().starts_with(start));
     if is || starts || parts.iter().any(|part| short.contains(part)) {
         return Err(unreadable(format!(
-            "its camera model `{name}` is no pinhole, and its numbers are not those of one; undistort the map to a pinhole camera, and              give that camera"
+            "its camera model `{name}` is no pinhole, and its numbers are not those of one; undistort the map to a pinhole camera, and \
+             give that camera"
         )));
     }
     Ok(())

@@ -7,7 +7,7 @@
 use serde_json::{Map, Value};
 
 use super::camera::{CameraFile, matrix, pinhole, refuse_no_pinhole, size, unreadable, with_lens};
-use super::unit::unit_m;
+use super::unit::{Entry, unit_m};
 use crate::encoding::Stereo;
 use crate::error::Result;
 
@@ -355,7 +355,7 @@ fn complete(camera: CameraFile, object: &Object, above: &[&Object], key: Option<
         camera = with_lens(camera, &model, &coefficients, false)?;
     }
     binned(&mut camera, object);
-    match near.iter().find_map(|object| unit_m(object)) {
+    match near.iter().find_map(|object| unit_m(&entries(object))) {
         Some(Ok(unit_m)) => camera.unit_m = Some(unit_m),
         Some(Err(note)) => camera.notes.push(note),
         None => (),
@@ -366,6 +366,11 @@ fn complete(camera: CameraFile, object: &Object, above: &[&Object], key: Option<
         camera.stereo = baseline.map(|baseline_m| Stereo { focal_px, baseline_m, doffs_px: 0.0 });
     }
     Ok(for_depth_size(camera, object))
+}
+
+/// The numbers of an object, for [`unit_m`].
+fn entries(object: &Object) -> Vec<Entry<'_>> {
+    object.iter().map(|(key, value)| (plain(key), key.as_str(), number(value))).collect()
 }
 
 /// Record3D states the size of the depth map, dw x dh, beside that of the picture, which the camera is for.
