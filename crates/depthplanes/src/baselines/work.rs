@@ -5,8 +5,10 @@
 //! asked for, a search looks at every pixel for each of them. The searches of recorded frames at defaults stay below the
 //! bound: their labels are those of searches without it.
 
-/// Pixels that may be looked at for each pixel of a map: a few seconds for a map of 640 x 480 pixels.
+/// Pixels that may be looked at for each pixel of a map.
 const LOOKS: u64 = 4096;
+/// The most pixels that may be looked at, some five seconds, however large the map.
+const MOST: u64 = 800_000_000;
 /// The smallest maps count as this many pixels: a search draws some thousand times whatever the map's size.
 const FEWEST: u64 = 4096;
 
@@ -19,7 +21,7 @@ pub(super) struct Work {
 impl Work {
     /// Nothing is done yet.
     pub(super) fn new(pixels: usize) -> Self {
-        Work { left: LOOKS * FEWEST.max(pixels as u64) }
+        Work { left: (LOOKS * FEWEST.max(pixels as u64)).min(MOST) }
     }
 
     /// Counts pixels that were looked at.
