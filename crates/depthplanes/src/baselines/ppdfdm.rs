@@ -18,6 +18,9 @@ use std::collections::BTreeSet;
 
 /// Most pixels that are looked at for each pixel of the map while planes are drawn; by default it is 60.
 const LOOKS_OF_DRAWS: usize = 4096;
+/// And in all, some seconds; but so few of a disc at least.
+const MOST_LOOKS: usize = 400_000_000;
+const FEW_OF_DISC: usize = 64;
 /// Most pixels of a disc that are looked at; of more, every second one, third one and so on.
 const MOST_OF_DISC: usize = 1024;
 
@@ -111,18 +114,20 @@ impl Ppdfdm {
     fn draw(&self, background: &Background<'_>) -> Vec<Seed> {
         let Affine { width, height, .. } = *background.affine;
         let places = |side: usize| (self.spacing.min(side) / 2..side).step_by(self.spacing);
+        let count = places(height).count() * places(width).count();
+        // Close seeds with large discs look at every pixel again and again.
+        let looks = (LOOKS_OF_DRAWS * self.spacing * self.spacing).min(MOST_LOOKS / count.max(1)).max(4 * FEW_OF_DISC);
         let grid = places(height).flat_map(|v| places(width).map(move |u| v * width + u));
-        let mut seeds: Vec<Seed> = grid.filter_map(|at| self.plane_at(background, at)).collect();
+        let mut seeds: Vec<Seed> = grid.filter_map(|at| self.plane_at(background, at, looks)).collect();
         seeds.sort_by(|one, other| other.share.total_cmp(&one.share));
         seeds
     }
 
     /// Draws planes through three pixels of the disc; of those the seed lies on, the one with the most aligned
     /// pixels, fitted to these.
-    fn plane_at(&self, background: &Background<'_>, at: usize) -> Option<Seed> {
-        let disc = self.disc(background.affine, at);
-        // Close seeds with large discs look at every pixel again and again.
-        let looks = LOOKS_OF_DRAWS * self.spacing * self.spacing / disc.len().max(1);
+    fn plane_at(&self, background: &Background<'_>, at: usize, looks: usize) -> Option<Seed> {
+        let disc = self.disc(background.affine, at, looks / 4);
+        let looks = looks / disc.len().max(1);
         let mut random = Random::new((self.seed << 32) ^ at as u64);
         let mut best = (Abc::default(), 0);
         for _ in 0..self.draws.min(looks.max(1)) {
@@ -142,9 +147,12 @@ impl Ppdfdm {
     }
 
     /// The valid pixels around a seed, or evenly some of them.
-    fn disc(&self, affine: &Affine, at: usize) -> Vec<u32> {
+    fn disc(&self, affine: &Affine, at: usize, most: usize) -> Vec<u32> {
         let (u, v, radius) = (at % affine.width, at / affine.width, self.radius);
-        let span = |middle: usize, side: usize| middle.saturating_sub(radius)..(middle + radius + 1).min(side);
+        // Every so many columns and rows, if all of them are too many.
+        let step = (1..).find(|step| 4 * radius * radius <= most * step * step).unwrap_or(1);
+        let first = |middle: usize| middle - middle.min(radius) / step * step;
+        let span = |middle: usize, side: usize| (first(middle)..(middle + radius + 1).min(side)).step_by(step);
         let square = |a: usize, b: usize| a.abs_diff(b).pow(2);
         let all: Vec<u32> = span(v, affine.height)
             .flat_map(|y| span(u, affine.width).map(move |x| (x, y)))
