@@ -117,18 +117,8 @@ fn the_room_of_the_page_on_outlines_is_what_is_outlined() {
 }
 
 fn overlay(method: &'static MethodInfo, frame: &Frame, detection: &Detection) -> Vec<u8> {
-    let report = Report {
-        source: SCENE,
-        frame,
-        method,
-        parameters: &method.defaults(),
-        detection,
-        coplanar: None,
-        outlines: None,
-        times: None,
-        legend: false,
-        notes: &[],
-    };
+    let defaults = method.defaults();
+    let report = Report::new(SCENE, frame, method, &defaults, detection);
     let output = OUTPUTS.iter().find(|output| output.name == "overlay").unwrap();
     (output.writer(Path::new("a.png")).unwrap().encode)(&report).unwrap()
 }

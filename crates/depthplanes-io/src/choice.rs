@@ -2,6 +2,11 @@
 //!
 //! A preset speaks of what a camera delivers. Where the file itself says something else, the file is right: floats are
 //! not a Kinect's millimetres, 8 bits are no 1/256 pixels, and PCD files hold metres.
+//!
+//! Without a stated encoding [`likely`] decides by the sample type:
+//! PFM -> `middlebury` (or `millimetre` if the median is above the number of columns), float -> `metre` (or `millimetre`
+//! if the median is above 100), 16-bit -> `millimetre`, 8-bit -> `grey`. It never guesses a bit packing; the traps of
+//! `crate::traps` say when the numbers look like one.
 
 use crate::encoding::{self, Encoding};
 use crate::error::Result;
@@ -37,7 +42,7 @@ pub(crate) fn choose(
     let Some(preset) = preset else {
         let (encoding, why) = match image.sample {
             "int16" if disparity => (encoding::by_name("opencv")?, "OpenCV's matchers write signed 16 bits".into()),
-            _ => encoding::likely(&image.pixels, image.width, format, disparity),
+            _ => likely(&image.pixels, image.width, format, disparity),
         };
         let is_doubtful = disparity && ["kitti", "opencv"].contains(&encoding.name);
         let note = format!(
@@ -50,7 +55,7 @@ pub(crate) fn choose(
     if suits(of_preset, image, format) {
         return Ok(Choice { encoding: of_preset, why: "preset".into(), note: None });
     }
-    let (encoding, why) = encoding::likely(&image.pixels, image.width, format, of_preset.disparity || disparity);
+    let (encoding, why) = likely(&image.pixels, image.width, format, of_preset.disparity || disparity);
     let note = format!(
         "the preset `{}` expects the encoding `{}`, but this is {format} of {}: read as `{}`, since {why}; state --encoding \
          if it is another",
@@ -67,10 +72,52 @@ fn suits(encoding: &Encoding, image: &Image, format: &str) -> bool {
         Pixels::U16(_) => true,
         Pixels::U8(_) => false,
         // Counts that somebody saved as floats; of metres nobody has so many.
-        Pixels::F32(values) => encoding::typical(values).is_some_and(|median| median > 100.0) && are_whole(values),
+        Pixels::F32(values) => typical(values).is_some_and(|median| median > 100.0) && are_whole(values),
     }
 }
 
 fn are_whole(values: &[f32]) -> bool {
     values.iter().filter(|value| value.is_finite()).all(|value| value.fract() == 0.0)
+}
+
+/// The encoding to assume when none is stated, and why; the rule stands in the module header.
+/// `width` is the number of columns; `disparity` says that the numbers are known to be disparities.
+pub(crate) fn likely(pixels: &Pixels, width: usize, format: &str, disparity: bool) -> (&'static Encoding, String) {
+    let (name, why) = match pixels {
+        Pixels::F32(_) if format == "pcd" => ("metre", "PCD files hold metres".to_string()),
+        Pixels::F32(values) if format == "pfm" && !disparity => match typical(values) {
+            // A disparity is at most the width of the picture.
+            Some(median) if f64::from(median) > width as f64 => {
+                ("millimetre", format!("the median {median} is no disparity in {width} columns"))
+            }
+            _ => ("middlebury", "PFM files hold disparity in pixels".to_string()),
+        },
+        Pixels::F32(_) if format == "pfm" => ("middlebury", "PFM files hold disparity in pixels".to_string()),
+        Pixels::F32(_) if disparity => ("disparity", "float disparity is in pixels".to_string()),
+        Pixels::U8(_) if disparity => ("middlebury", "8-bit disparity has a scale of its data set".to_string()),
+        Pixels::U16(values)
+            if disparity && values.iter().filter(|&&value| value == 65_520).count() * 200 > values.len() =>
+        {
+            ("opencv", "65520 is the -16 of OpenCV's matchers".to_string())
+        }
+        Pixels::U16(values) if disparity => match values.iter().max() {
+            Some(largest) if *largest > 2048 => ("kitti", format!("{largest} pixels of disparity would be too many")),
+            _ => ("disparity", "the values are small enough to be pixels".to_string()),
+        },
+        Pixels::F32(values) => match typical(values) {
+            Some(median) if median > 100.0 => ("millimetre", format!("the median {median} is too far for metres")),
+            _ => ("metre", "float maps hold metres".to_string()),
+        },
+        Pixels::U16(_) => ("millimetre", "16-bit maps mostly hold millimetres".to_string()),
+        Pixels::U8(_) => ("grey", "8-bit maps have no common unit".to_string()),
+    };
+    (encoding::by_name(name).expect("a name of the table"), why)
+}
+
+/// The median of at most 4096 positive values.
+fn typical(values: &[f32]) -> Option<f32> {
+    let step = values.len() / 4096 + 1;
+    let mut sample: Vec<f32> = values.iter().step_by(step).copied().filter(|z| *z > 0.0 && z.is_finite()).collect();
+    sample.sort_by(f32::total_cmp);
+    sample.get(sample.len() / 2).copied()
 }

@@ -3,11 +3,6 @@
 //! In: an [`Image`] and what the user knows. Out: the same image, unpacked only where the encoding
 //! packs bits (`kinect-sdk`, `sun-rgbd`) or spreads bytes over channels (`packed.rs`), and its [`Meaning`]. Integer maps
 //! otherwise keep the numbers that are in the file, because the paper's threshold counts grey levels.
-//!
-//! Without a stated encoding [`likely`] decides by the sample type:
-//! PFM -> `middlebury` (or `millimetre` if the median is above the number of columns), float -> `metre` (or `millimetre`
-//! if the median is above 100), 16-bit -> `millimetre`, 8-bit -> `grey`. It never guesses a bit packing; the traps of
-//! [`crate::inspect`] say when the numbers look like one.
 
 use depthplanes::Measure;
 
@@ -267,51 +262,9 @@ pub fn by_name(name: &str) -> Result<&'static Encoding> {
     })
 }
 
-/// The encoding to assume when none is stated, and why; the rule stands in the module header.
-/// `width` is the number of columns; `disparity` says that the numbers are known to be disparities.
-pub fn likely(pixels: &Pixels, width: usize, format: &str, disparity: bool) -> (&'static Encoding, String) {
-    let (name, why) = match pixels {
-        Pixels::F32(_) if format == "pcd" => ("metre", "PCD files hold metres".to_string()),
-        Pixels::F32(values) if format == "pfm" && !disparity => match typical(values) {
-            // A disparity is at most the width of the picture.
-            Some(median) if f64::from(median) > width as f64 => {
-                ("millimetre", format!("the median {median} is no disparity in {width} columns"))
-            }
-            _ => ("middlebury", "PFM files hold disparity in pixels".to_string()),
-        },
-        Pixels::F32(_) if format == "pfm" => ("middlebury", "PFM files hold disparity in pixels".to_string()),
-        Pixels::F32(_) if disparity => ("disparity", "float disparity is in pixels".to_string()),
-        Pixels::U8(_) if disparity => ("middlebury", "8-bit disparity has a scale of its data set".to_string()),
-        Pixels::U16(values)
-            if disparity && values.iter().filter(|&&value| value == 65_520).count() * 200 > values.len() =>
-        {
-            ("opencv", "65520 is the -16 of OpenCV's matchers".to_string())
-        }
-        Pixels::U16(values) if disparity => match values.iter().max() {
-            Some(largest) if *largest > 2048 => ("kitti", format!("{largest} pixels of disparity would be too many")),
-            _ => ("disparity", "the values are small enough to be pixels".to_string()),
-        },
-        Pixels::F32(values) => match typical(values) {
-            Some(median) if median > 100.0 => ("millimetre", format!("the median {median} is too far for metres")),
-            _ => ("metre", "float maps hold metres".to_string()),
-        },
-        Pixels::U16(_) => ("millimetre", "16-bit maps mostly hold millimetres".to_string()),
-        Pixels::U8(_) => ("grey", "8-bit maps have no common unit".to_string()),
-    };
-    (by_name(name).expect("a name of the table"), why)
-}
-
 /// The encoding that a file itself states.
 pub fn stated_by_file(image: &Image) -> Option<&'static Encoding> {
     image.quantisation.map(|_| by_name("compressed-depth").expect("a name of the table"))
-}
-
-/// The median of at most 4096 positive values.
-pub(crate) fn typical(values: &[f32]) -> Option<f32> {
-    let step = values.len() / 4096 + 1;
-    let mut sample: Vec<f32> = values.iter().step_by(step).copied().filter(|z| *z > 0.0 && z.is_finite()).collect();
-    sample.sort_by(f32::total_cmp);
-    sample.get(sample.len() / 2).copied()
 }
 
 /// Depth, negative floats missing.

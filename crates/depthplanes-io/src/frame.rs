@@ -72,6 +72,13 @@ pub struct Provenance {
     pub ray_distance: bool,
 }
 
+impl Provenance {
+    /// Whether nobody stated the encoding, neither the user nor a preset: it is what the map looks like.
+    pub fn is_guess(&self) -> bool {
+        self.encoding != "stated" && self.encoding != "preset"
+    }
+}
+
 /// Who stated something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {

@@ -2,7 +2,7 @@
 //!
 //! In: a [`Frame`]. Out: a [`Summary`] for people.
 
-use crate::encoding;
+use crate::choice::likely;
 use crate::error::Result;
 use crate::frame::{Frame, Pixels};
 use crate::traps::Probe;
@@ -62,7 +62,7 @@ pub fn summary(frame: &Frame, bins: usize) -> Result<Summary> {
     let probe = Probe::of(frame, MOST_PIXELS)?;
     let valid = &probe.valid;
     let range = valid.first().map(|first| [*first, valid[valid.len() / 2], valid[valid.len() - 1]]);
-    let (likely, likely_reason) = encoding::likely(&frame.pixels, frame.width, frame.format, false);
+    let (likely, likely_reason) = likely(&frame.pixels, frame.width, frame.format, false);
     let warnings = frame.warnings.clone();
     let distinct = valid.chunk_by(|a, b| a == b).count();
     Ok(Summary {

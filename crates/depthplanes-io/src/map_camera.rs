@@ -203,94 +203,127 @@ fn no_choice(file: &CameraFile, (w, h): Size) -> Error {
 /// Notes on a camera that is unlikely for a map; `is_size_stated` if a size was stated, so that the picture may well be a
 /// part of a larger one.
 fn checked(camera: &Intrinsics, map: Size, is_size_stated: bool, lens: Option<&Distortion>) -> Result<Vec<String>> {
-    let Intrinsics { fx, fy, cx, cy } = *camera;
-    let (w, h) = map;
-    let sides = [w as f64, h as f64];
-    let off = |at: [f64; 2]| [0, 1].map(|i| (at[i] - 0.5 * (sides[i] - 1.0)).abs() / sides[i]);
-    if [fx, fy, cx, cy].iter().all(|part| (0.0..2.0).contains(part)) {
-        let own = Intrinsics { fx: fx * sides[0], fy: fy * sides[1], cx: cx * sides[0] - 0.5, cy: cy * sides[1] - 0.5 };
-        let accepted = format!("pixels; if these are parts of the picture's width and height, {}", flag(&own));
-        return Err(Error::parameter("camera", format_args!("{fx},{fy},{cx},{cy}"), accepted));
+    refuse_other_orders(camera, map)?;
+    if !is_size_stated {
+        refuse_outside(camera, map)?;
     }
-    let is_middle = |at: [f64; 2]| off(at).iter().all(|&off| off <= FAR);
-    let is_outside = [cx, cy].iter().zip(sides).any(|(&c, side)| c < -0.5 || c > side - 0.5);
-    let mut notes = Vec::new();
-    // fx and fy stand where cx and cy belong: those are equal, these are the middle of the map or of a picture of its shape.
-    let is_shape = ((2.0 * fx + 1.0) / (2.0 * fy + 1.0) / (sides[0] / sides[1]) - 1.0).abs() < 0.02;
-    let is_swapped = (cx - cy).abs() <= 0.05 * cx.abs() && fx != fy && (is_middle([fx, fy]) || is_shape && is_outside);
-    if !is_middle([cx, cy]) && is_swapped {
+    let is_wide = lens.is_some_and(|lens| lens.model() == DistortionModel::KannalaBrandt);
+    let notes = [
+        middle_elsewhere(camera, map, is_size_stated),
+        odd_pixels(camera),
+        odd_field(camera, map).filter(|_| !is_wide),
+    ];
+    Ok(notes.into_iter().flatten().collect())
+}
+
+/// Whether a place is the middle of a picture to within a pixel.
+fn is_middle_of([u, v]: [f64; 2], (width, height): Size) -> bool {
+    (2.0 * u + 1.0 - width as f64).abs() <= 1.5 && (2.0 * v + 1.0 - height as f64).abs() <= 1.5
+}
+
+/// Whether a place is no further from the middle than [`FAR`].
+fn is_near_middle(at: [f64; 2], (width, height): Size) -> bool {
+    let is_near = |at: f64, side: usize| (at - 0.5 * (side as f64 - 1.0)).abs() <= FAR * side as f64;
+    is_near(at[0], width) && is_near(at[1], height)
+}
+
+fn is_outside(camera: &Intrinsics, (width, height): Size) -> bool {
+    let is_outside = |at: f64, side: usize| at < -0.5 || at > side as f64 - 0.5;
+    is_outside(camera.cx, width) || is_outside(camera.cy, height)
+}
+
+/// Refuses parts of the picture's size, and focal lengths in the place of the principal point.
+fn refuse_other_orders(camera: &Intrinsics, map: Size) -> Result<()> {
+    let Intrinsics { fx, fy, cx, cy } = *camera;
+    let [width, height] = [map.0, map.1].map(|side| side as f64);
+    let refused = |accepted| Err(Error::parameter("camera", format_args!("{fx},{fy},{cx},{cy}"), accepted));
+    if [fx, fy, cx, cy].iter().all(|part| (0.0..2.0).contains(part)) {
+        let own = Intrinsics { fx: fx * width, fy: fy * height, cx: cx * width - 0.5, cy: cy * height - 0.5 };
+        return refused(format!("pixels; if these are parts of the picture's width and height, {}", flag(&own)));
+    }
+    // Focal lengths are about equal, and the principal point is the middle of the map or of a picture of its shape.
+    let is_shape = ((2.0 * fx + 1.0) / (2.0 * fy + 1.0) / (width / height) - 1.0).abs() < 0.02;
+    let is_middle = is_near_middle([fx, fy], map) || is_shape && is_outside(camera, map);
+    let is_swapped = (cx - cy).abs() <= 0.05 * cx.abs() && fx != fy && is_middle;
+    if is_swapped && !is_near_middle([cx, cy], map) {
         let swapped = Intrinsics { fx: cx, fy: cy, cx: fx, cy: fy };
         let own = whole_picture(&swapped, map).map_or(swapped, |(_, scaled)| scaled);
-        let accepted = format!("focal lengths first, then the principal point: {}", flag(&own));
-        return Err(Error::parameter("camera", format_args!("{fx},{fy},{cx},{cy}"), accepted));
+        return refused(format!("focal lengths first, then the principal point: {}", flag(&own)));
     }
-    let is_middle_of =
-        |(w, h): Size| (2.0 * cx + 1.0 - w as f64).abs() <= 1.5 && (2.0 * cy + 1.0 - h as f64).abs() <= 1.5;
-    if w != h && is_middle_of((h, w)) {
-        notes.push(format!(
-            "the principal point {cx},{cy} is the middle of {h} x {w} pixels, and the map has {w} x {h}: are cx and cy exchanged, or was \
-             the picture turned by 90 degrees?"
+    Ok(())
+}
+
+/// Refuses a principal point outside of the map, unless it is that of the turned picture, which is noted.
+fn refuse_outside(camera: &Intrinsics, map: Size) -> Result<()> {
+    let Intrinsics { cx, cy, .. } = *camera;
+    let (w, h) = map;
+    if !is_outside(camera, map) || is_middle_of([cx, cy], (h, w)) {
+        return Ok(());
+    }
+    let accepted = match whole_picture(camera, map) {
+        Some(((width, height), scaled)) => format!(
+            "a principal point within the map, which has {w} x {h} pixels; this one is that of {width} x {height}: {}, or \
+             --camera-size {width}x{height}",
+            flag(&scaled)
+        ),
+        None => format!(
+            "a principal point within the map, which has {w} x {h} pixels; --camera-size WxH if the camera is for another size, \
+             --camera-size {w}x{h} if the map is a part of a larger picture"
+        ),
+    };
+    Err(Error::parameter("principal point", format_args!("{cx},{cy}"), accepted))
+}
+
+/// A principal point that is the middle of another picture, or far from that of the map.
+fn middle_elsewhere(camera: &Intrinsics, map: Size, is_size_stated: bool) -> Option<String> {
+    let (Intrinsics { cx, cy, .. }, (w, h)) = (*camera, map);
+    let has = format!("and the map has {w} x {h}");
+    if w != h && is_middle_of([cx, cy], (h, w)) {
+        return Some(format!(
+            "the principal point {cx},{cy} is the middle of {h} x {w} pixels, {has}: are cx and cy exchanged, or was the picture \
+             turned by 90 degrees?"
         ));
-        return Ok(notes);
     }
-    let guess = whole_picture(camera, map);
-    if is_outside && !is_size_stated {
-        let accepted = match guess {
-            Some((size, scaled)) => format!(
-                "a principal point within the map, which has {w} x {h} pixels; this one is that of {} x {}: {}, or --camera-size {}x{}",
-                size.0,
-                size.1,
-                flag(&scaled),
-                size.0,
-                size.1
-            ),
-            None => format!(
-                "a principal point within the map, which has {w} x {h} pixels; --camera-size WxH if the camera is for another size, \
-                 --camera-size {w}x{h} if the map is a part of a larger picture"
-            ),
-        };
-        return Err(Error::parameter("principal point", format_args!("{cx},{cy}"), accepted));
-    }
-    if let (Some((size, scaled)), false) = (guess, is_size_stated) {
-        notes.push(format!(
-            "the principal point {cx},{cy} is the middle of {} x {} pixels, and the map has {w} x {h}: if the camera is for that size, give \
-             --camera-size {}x{} or {}",
-            size.0,
-            size.1,
-            size.0,
-            size.1,
+    if let Some(((width, height), scaled)) = whole_picture(camera, map).filter(|_| !is_size_stated) {
+        return Some(format!(
+            "the principal point {cx},{cy} is the middle of {width} x {height} pixels, {has}: if the camera is for that size, give \
+             --camera-size {width}x{height} or {}",
             flag(&scaled)
         ));
-    } else if let Some((width, height)) =
-        COMMON.into_iter().find(|&size| !is_size_stated && size != map && !is_middle_of(map) && is_middle_of(size))
-    {
-        notes.push(format!(
-            "the principal point {cx},{cy} is the middle of {width} x {height} pixels, and the map has {w} x {h}: if it is a part of that \
-             picture, take the part's corner off the principal point; if it was resized, give --camera-size {width}x{height}"
-        ));
-    } else if !is_middle([cx, cy]) {
-        notes.push(format!(
-            "the principal point {cx},{cy} lies far from the middle of {w} x {h} pixels: right if the map is a part of a larger picture, \
-             else check --intrinsics, --camera and --camera-size"
+    }
+    let is_known = |size: &Size| !is_size_stated && !is_middle_of([cx, cy], map) && is_middle_of([cx, cy], *size);
+    if let Some((width, height)) = COMMON.into_iter().find(is_known) {
+        return Some(format!(
+            "the principal point {cx},{cy} is the middle of {width} x {height} pixels, {has}: if it is a part of that picture, take \
+             the part's corner off the principal point; if it was resized, give --camera-size {width}x{height}"
         ));
     }
-    if !(0.7..1.4).contains(&(fx / fy).abs()) {
-        notes.push(format!(
-            "focal lengths of {fx} and {fy} pixels mean pixels that are far from square: is the order fx,fy,cx,cy?"
-        ));
-    }
-    if lens.is_none_or(|lens| lens.model() != DistortionModel::KannalaBrandt) {
-        let field = |side: f64, focal: f64| 2.0 * (0.5 * side / focal.abs()).atan().to_degrees();
-        let fields = [field(sides[0], fx), field(sides[1], fy)];
-        if fields.iter().any(|field| !(FIELD_DEG[0]..=FIELD_DEG[1]).contains(field)) {
-            notes.push(format!(
-                "focal lengths of {fx} and {fy} pixels mean a field of view of {:.1} x {:.1} degrees: check --intrinsics, --camera and \
-                 --camera-size",
-                fields[0], fields[1]
-            ));
-        }
-    }
-    Ok(notes)
+    (!is_near_middle([cx, cy], map)).then(|| {
+        format!(
+            "the principal point {cx},{cy} lies far from the middle of {w} x {h} pixels: right if the map is a part of a larger \
+             picture, else check --intrinsics, --camera and --camera-size"
+        )
+    })
+}
+
+/// Pixels that are far from square.
+fn odd_pixels(&Intrinsics { fx, fy, .. }: &Intrinsics) -> Option<String> {
+    (!(0.7..1.4).contains(&(fx / fy).abs())).then(|| {
+        format!("focal lengths of {fx} and {fy} pixels mean pixels that are far from square: is the order fx,fy,cx,cy?")
+    })
+}
+
+/// A field of view that is far from usual.
+fn odd_field(&Intrinsics { fx, fy, .. }: &Intrinsics, (width, height): Size) -> Option<String> {
+    let field = |side: usize, focal: f64| 2.0 * (0.5 * side as f64 / focal.abs()).atan().to_degrees();
+    let [across, down] = [field(width, fx), field(height, fy)];
+    let is_usual = |field: &f64| (FIELD_DEG[0]..=FIELD_DEG[1]).contains(field);
+    (![across, down].iter().all(is_usual)).then(|| {
+        format!(
+            "focal lengths of {fx} and {fy} pixels mean a field of view of {across:.1} x {down:.1} degrees: check --intrinsics, \
+             --camera and --camera-size"
+        )
+    })
 }
 
 /// The size of which the principal point is the middle, and the camera scaled to the map, if the map has that shape and

@@ -127,29 +127,13 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
     }
     let camera = camera(options, preset, &mut image)?;
     let is_stated = why == "stated" || why == "preset";
-    if options.stereo.is_some() && !encoding.disparity {
-        image.warnings.push(format!("the stereo rig is not used: the encoding `{}` is no disparity", encoding.name));
-    }
     let scale =
         scale(options, encoding)?.or_else(|| scale_of_camera_file(&camera, encoding.name, is_stated, &mut image));
+    image.warnings.extend(doubt_of_rig(options.stereo, &camera, encoding));
     let stereo = options.stereo.or(camera.stereo);
-    if let (Some(rig), Some(own), true) = (options.stereo, camera.intrinsics, encoding.disparity)
-        && (rig.focal_px / own.fx.abs() - 1.0).abs() > 0.02
-    {
-        let (focal, fx) = (rig.focal_px, own.fx);
-        image
-            .warnings
-            .push(format!("the rig's focal length is {focal} pixels and the camera's {fx}: one of them is wrong"));
-    }
     let meaning = (encoding.apply)(&mut image, &Given { scale, stereo })?;
     let of_preset = |part: fn(&SensorPreset) -> Option<PresetNoise>| part(preset?)?.of();
-    let of_preset_or_file = preset.and_then(|preset| preset.missing).or(image.missing);
-    let missing = missing(options, &image)?.or(of_preset_or_file).or(encoding.missing);
-    let missing = missing.filter(|value| storable(&image.pixels, *value)).or_else(|| {
-        let (value, note) = not_measured(&image.pixels, meaning.measure).filter(|_| options.valid_range.is_none())?;
-        image.warnings.push(note);
-        Some(value)
-    });
+    let missing = missing(options, preset, encoding, &meaning, &mut image)?;
     let mut frame = Frame {
         width: image.width,
         height: image.height,
@@ -195,7 +179,11 @@ fn scale(options: &ReadOptions, encoding: &Encoding) -> Result<Option<f64>> {
         let accepted = format!("a map of depth; the encoding `{}` has another unit", encoding.name);
         return Err(Error::parameter("--depth-scale", depth_scale, accepted));
     }
-    Ok(Some(1.0 / depth_scale))
+    let units_per_metre = 1.0 / depth_scale;
+    if !(units_per_metre > 0.0 && units_per_metre.is_finite() && depth_scale.is_finite()) {
+        return Err(Error::parameter("--depth-scale", depth_scale, "metres of a map unit: a finite number above 0"));
+    }
+    Ok(Some(units_per_metre))
 }
 
 /// Who stated a part of the noise.
@@ -213,16 +201,41 @@ fn storable(pixels: &Pixels, value: f64) -> bool {
     value.fract() == 0.0 && (0.0..=most).contains(&value)
 }
 
-/// The user's value for "missing", which must be one that a pixel can have.
-fn missing(options: &ReadOptions, image: &Image) -> Result<Option<f64>> {
-    match options.missing {
-        Some(value) if !storable(&image.pixels, value) => {
-            let accepted =
-                format!("a value that a {} pixel can have; 0, NaN and infinities are missing anyway", image.sample);
-            Err(Error::parameter("--missing", value, accepted))
-        }
-        value => Ok(value),
+/// The value for "missing": the user's, which must be one that a pixel can have, or else the preset's, the file's or the
+/// encoding's, or else one that no sensor measures.
+fn missing(
+    options: &ReadOptions,
+    preset: Option<&SensorPreset>,
+    encoding: &Encoding,
+    meaning: &Meaning,
+    image: &mut Image,
+) -> Result<Option<f64>> {
+    if let Some(value) = options.missing.filter(|value| !storable(&image.pixels, *value)) {
+        let accepted =
+            format!("a value that a {} pixel can have; 0, NaN and infinities are missing anyway", image.sample);
+        return Err(Error::parameter("--missing", value, accepted));
     }
+    let of_preset = preset.and_then(|preset| preset.missing);
+    let known = options.missing.or(of_preset).or(image.missing).or(encoding.missing);
+    if let Some(value) = known.filter(|value| storable(&image.pixels, *value)) {
+        return Ok(Some(value));
+    }
+    let odd = not_measured(&image.pixels, meaning.measure).filter(|_| options.valid_range.is_none());
+    Ok(odd.map(|(value, note)| {
+        image.warnings.push(note);
+        value
+    }))
+}
+
+/// What a person should know of a stereo rig that was stated.
+fn doubt_of_rig(rig: Option<Stereo>, camera: &MapCamera, encoding: &Encoding) -> Option<String> {
+    let (rig, name) = (rig?, encoding.name);
+    if !encoding.disparity {
+        return Some(format!("the stereo rig is not used: the encoding `{name}` is no disparity"));
+    }
+    let (focal, fx) = (rig.focal_px, camera.intrinsics?.fx);
+    ((focal / fx.abs() - 1.0).abs() > 0.02)
+        .then(|| format!("the rig's focal length is {focal} pixels and the camera's {fx}: one of them is wrong"))
 }
 
 fn swap_bytes(image: &mut Image) -> Result<()> {

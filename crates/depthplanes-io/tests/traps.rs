@@ -164,7 +164,8 @@ fn a_scale_is_map_units_per_metre_whatever_the_preset() {
     }
     let both = ReadOptions { scale: Some(1.0), depth_scale: Some(1.0), ..camera() };
     let of_disparity = ReadOptions { depth_scale: Some(1.0), ..encoding("kitti") };
-    for options in [both, of_disparity] {
+    let no_scale = |scale| ReadOptions { depth_scale: Some(scale), ..camera() };
+    for options in [both, of_disparity, no_scale(0.0), no_scale(-0.001), no_scale(f64::NAN), no_scale(f64::INFINITY)] {
         assert!(decode(&tenths, "room", &options).unwrap_err().to_string().contains("--depth-scale"));
     }
 }

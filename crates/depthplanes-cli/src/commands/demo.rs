@@ -20,18 +20,8 @@ pub(super) fn run(folder: &Path, out: &mut dyn Write) -> Outcome {
     let recipe = Recipe::new(methods::default(), &[], 1)?;
     let found = Runner::new(&recipe).detect(&frame, 0)?;
     let source = format!("scene:{SCENE}");
-    let report = Report {
-        source: &source,
-        frame: &frame,
-        method: recipe.method,
-        parameters: &recipe.values,
-        detection: &found.detection,
-        coplanar: None,
-        outlines: None,
-        times: None,
-        legend: true,
-        notes: &[],
-    };
+    let report =
+        Report { legend: true, ..Report::new(&source, &frame, recipe.method, &recipe.values, &found.detection) };
     make_folder(folder)?;
     let depth = folder.join("depth.png");
     outputs::write_file(&depth, &depth_png(&frame))?;

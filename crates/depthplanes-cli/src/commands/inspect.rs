@@ -53,18 +53,7 @@ fn look(input: &inputs::Input, options: &ReadOptions) -> Outcome<(Frame, Summary
 fn doubts_of_planes(frame: &Frame) -> Outcome<Vec<String>> {
     let recipe = Recipe::new(methods::default(), &[], 1)?;
     let found = Runner::new(&recipe).detect(frame, 0)?;
-    Ok(doubts(&Report {
-        source: "",
-        frame,
-        method: recipe.method,
-        parameters: &recipe.values,
-        detection: &found.detection,
-        coplanar: None,
-        outlines: None,
-        times: None,
-        legend: false,
-        notes: &[],
-    }))
+    Ok(doubts(&Report::new("", frame, recipe.method, &recipe.values, &found.detection)))
 }
 
 fn record(name: &str, seen: &Summary) -> serde_json::Value {

@@ -3,7 +3,7 @@
 
 use serde_json::{Map, Value};
 
-use super::tree::words;
+use super::names::words;
 
 /// The tree of a text whose every line is `key = value` or `[section]`; none of another. Values in brackets may go on below.
 pub(super) fn parse(text: &str) -> Option<Value> {

@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::camera::{CameraFile, pinhole, size, unreadable, with_lens};
 use super::form::Document;
 use super::lines::{number, pairs};
-use super::tree::{get, numbers};
+use super::names::{get, numbers};
 use crate::error::Result;
 
 /// A mode: pixels of the calibrated picture after binning, where the mode's picture begins in it, and its size

@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use super::camera::{CameraFile, matrix, size, unreadable, with_lens};
 use super::form::Document;
-use super::tree::{get, number, numbers};
+use super::names::{get, number, numbers};
 use crate::encoding::Stereo;
 use crate::error::Result;
 

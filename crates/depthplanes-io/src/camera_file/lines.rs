@@ -1,6 +1,6 @@
 //! Lines of a name and what is behind it, as many tools print them: `name: value`, `name = value`, `name,value`.
 
-use super::tree::{plain, words};
+use super::names::{plain, words};
 
 /// A line's name, without case and signs, and what stands behind it.
 pub(super) fn pairs(text: &str) -> impl Iterator<Item = (String, &str)> {

@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 use super::camera::{CameraFile, matrix, pinhole, size, unreadable, with_lens};
 use super::form::Document;
 use super::lines;
-use super::tree::{get, numbers, plain, words};
+use super::names::{get, numbers, plain, words};
 use crate::error::Result;
 
 const COUNTS_FROM_1: &str = "pixels of Matlab are counted from 1: 1 is taken off the principal point";

@@ -3,7 +3,7 @@
 
 use super::camera::{CameraFile, matrix, size, unreadable};
 use super::form::Document;
-use super::tree::words;
+use super::names::words;
 use crate::encoding::Stereo;
 use crate::error::Result;
 

@@ -2,7 +2,7 @@
 
 use super::camera::{CameraFile, matrix, unreadable};
 use super::form::Document;
-use super::tree::words;
+use super::names::words;
 use crate::error::Result;
 
 fn after<'a>(text: &'a str, title: &'a str) -> impl Iterator<Item = &'a str> {

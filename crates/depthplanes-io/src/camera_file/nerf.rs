@@ -4,7 +4,8 @@ use serde_json::{Map, Value};
 
 use super::camera::{CameraFile, pinhole, size, unreadable};
 use super::form::Document;
-use super::tree::{self, get, number};
+use super::names::{get, number};
+use super::tree;
 use crate::error::Result;
 
 fn root<'a>(document: &'a Document<'_>) -> Option<&'a Map<String, Value>> {

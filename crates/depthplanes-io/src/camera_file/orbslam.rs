@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use super::camera::{CameraFile, pinhole, size, unreadable, with_lens};
 use super::form::Document;
-use super::tree::number;
+use super::names::number;
 use crate::encoding::Stereo;
 use crate::error::Result;
 

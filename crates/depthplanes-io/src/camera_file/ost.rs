@@ -4,7 +4,8 @@ use serde_json::{Map, Value};
 
 use super::camera::{CameraFile, unreadable};
 use super::form::Document;
-use super::tree::{self, plain, words};
+use super::names::{plain, words};
+use super::tree;
 use crate::error::Result;
 
 /// Its titles, and the names of ROS.

@@ -3,7 +3,7 @@
 use super::camera::{CameraFile, pinhole, size, unreadable, with_lens};
 use super::form::Document;
 use super::lines::{number, numbers, pairs};
-use super::tree::words;
+use super::names::words;
 use crate::error::Result;
 
 pub(super) fn recognise(document: &Document<'_>) -> bool {

@@ -2,7 +2,7 @@
 
 use super::camera::{CameraFile, matrix, pinhole, size, unreadable, with_lens};
 use super::form::Document;
-use super::tree::words;
+use super::names::words;
 use crate::encoding::Stereo;
 use crate::error::Result;
 

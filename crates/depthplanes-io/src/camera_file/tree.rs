@@ -1,143 +1,20 @@
-//! Cameras in a tree of names and values, from JSON or YAML, whatever their nesting: numbers under the names that
-//! programs give to focal lengths, principal points, matrices, sizes and distortion coefficients.
+//! Cameras in a tree of names and values, from JSON or YAML, whatever their nesting: numbers under names that programs use
+//! (`names.rs`).
 //!
-//! Names are compared without case and signs. Of several cameras that differ one for depth is taken, or the left one of a
+//! Of several cameras that differ one for depth is taken, or the left one of a
 //! pair, and said; others are refused with what was found.
 
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 use super::camera::{CameraFile, matrix, pinhole, refuse_no_pinhole, size, unreadable, with_lens};
+use super::names::{
+    BOTH_CENTRES, BOTH_FOCALS, BOTH_SIDES, CENTRE, FISHEYE, FOCAL, LENS, MODELS, Object, SIDES, get, is_matrix, number,
+    number_of, numbers, plain, words,
+};
+use super::several::{Found, one_of};
 use super::unit::{Entry, unit_m};
 use crate::encoding::Stereo;
 use crate::error::Result;
-
-type Object = Map<String, Value>;
-
-const FOCAL: [&[&str]; 2] = [
-    &["fx", "flx", "focalx", "focallengthx", "alphax", "ffx", "mu"],
-    &["fy", "fly", "focaly", "focallengthy", "alphay", "ffy", "mv"],
-];
-const BOTH_FOCALS: &[&str] = &["f", "focal", "focallength", "focallengths", "fl"];
-const CENTRE: [&[&str]; 2] = [
-    &["cx", "ppx", "principalx", "principalpointx", "centerx", "u0", "ox", "px"],
-    &["cy", "ppy", "principaly", "principalpointy", "centery", "v0", "oy", "py"],
-];
-const BOTH_CENTRES: &[&str] = &["principalpoint", "pp", "center", "opticalcenter", "principal"];
-const MATRIX: &[&str] = &[
-    "k", "mtx", "m1", "m2", "k1", "k2", "kl", "kr", "kdepth", "depthk", "kir", "krgb", "kcolor", "camk", "cammat", "a",
-];
-const SIDES: [&[&str]; 2] = [
-    &["width", "w", "imagewidth", "imgwidth", "resolutionwidth", "resx", "sizex", "dw"],
-    &["height", "h", "imageheight", "imgheight", "resolutionheight", "resy", "sizey", "dh"],
-];
-const BOTH_SIDES: &[&str] = &[
-    "resolution",
-    "imageresolution",
-    "imagesize",
-    "imgsize",
-    "size",
-    "imageshape",
-    "shape",
-    "imagedimensions",
-    "dimensions",
-    "dims",
-    "videosize",
-];
-const LENS: &[&str] = &[
-    "d",
-    "distortioncoefficients",
-    "distortioncoeffs",
-    "distortioncoeff",
-    "distcoeffs",
-    "distcoeff",
-    "coeffs",
-    "coefficients",
-    "distortion",
-    "dist",
-    "distortionparams",
-    "distortionparameters",
-    "distortionvector",
-    "distcoefs",
-    "distcoef",
-    "distortions",
-    "d1",
-    "dl",
-];
-const MODELS: &[&str] = &[
-    "distortionmodel",
-    "distortiontype",
-    "lensmodel",
-    "distortion",
-    "model",
-    "cameramodel",
-    "cameratype",
-    "projectionmodel",
-    "modeltype",
-    "projectiontype",
-];
-
-/// Flags that the coefficients are those of OpenCV's fisheye.
-const FISHEYE: &[&str] = &["isfisheye", "fisheyemodel", "fisheye", "usefisheyemodel"];
-
-/// A name without case and signs.
-pub(super) fn plain(name: &str) -> String {
-    name.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_lowercase()
-}
-
-/// The value under one of some names, the first of them first.
-pub(super) fn get<'a>(object: &'a Object, names: &[&str]) -> Option<&'a Value> {
-    names.iter().find_map(|&name| object.iter().find(|(key, _)| plain(key) == name).map(|(_, value)| value))
-}
-
-/// A number, or a text that is one.
-pub(super) fn number(value: &Value) -> Option<f64> {
-    value.as_f64().or_else(|| value.as_str()?.trim().parse().ok().filter(|number: &f64| number.is_finite()))
-}
-
-fn number_of(object: &Object, names: &[&str]) -> Option<f64> {
-    number(get(object, names)?)
-}
-
-/// The numbers of a text of numbers alone, with blanks, commas, semicolons or brackets between.
-pub(super) fn words(text: &str) -> Option<Vec<f64>> {
-    let is_gap = |c: char| c.is_whitespace() || ",;[](){}".contains(c);
-    let words = text.split(is_gap).filter(|word| !word.is_empty());
-    words.map(|word| word.parse().ok().filter(|number: &f64| number.is_finite())).collect()
-}
-
-/// All numbers of a list of whatever nesting, of a text of numbers, or of OpenCV's and ROS's `data`.
-pub(super) fn numbers(value: &Value) -> Option<Vec<f64>> {
-    match value {
-        Value::Array(items) => {
-            let mut all = Vec::new();
-            for item in items {
-                match item {
-                    Value::Array(_) => all.extend(numbers(item)?),
-                    _ => all.push(number(item)?),
-                }
-            }
-            (all.len() <= 64).then_some(all)
-        }
-        Value::String(text) => words(text).filter(|numbers| numbers.len() > 1),
-        Value::Object(object) => numbers(get(object, &["data"])?),
-        _ => None,
-    }
-}
-
-/// Whether a name is that of a camera matrix.
-fn is_matrix(name: &str) -> bool {
-    let name = plain(name);
-    let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
-    (has(&["intrinsic", "cameramatrix", "cammatrix", "cameramat", "calibrationmatrix", "kmatrix"])
-        || MATRIX.contains(&name.as_str()))
-        && !has(&["extrinsic", "inv"])
-}
-
-/// A camera and the way to it.
-struct Found {
-    path: String,
-    camera: CameraFile,
-}
 
 /// The camera of a tree.
 ///
@@ -493,58 +370,4 @@ fn model_of(near: &[&Object]) -> String {
         })
     };
     near.iter().take(2).find_map(named).unwrap_or_default()
-}
-
-/// The one camera of those found.
-fn one_of(mut found: Vec<Found>) -> Result<CameraFile> {
-    let same = |a: &CameraFile, b: &CameraFile| {
-        a.intrinsics == b.intrinsics && a.distortion == b.distortion && a.size == b.size
-    };
-    let mut distinct: Vec<usize> = Vec::new();
-    for at in 0..found.len() {
-        if !distinct.iter().any(|&other| same(&found[other].camera, &found[at].camera)) {
-            distinct.push(at);
-        }
-        if distinct.len() > 100 {
-            break;
-        }
-    }
-    let taken = match distinct[..] {
-        [only] => only,
-        _ => {
-            let lower = |at: usize| found[at].path.to_lowercase();
-            let with = |word: &str| distinct.iter().copied().filter(|&at| lower(at).contains(word)).collect::<Vec<_>>();
-            let pair = |left: &str, right: &str| {
-                let [left, right] = [with(left), with(right)];
-                (distinct.len() == 2 && left.len() == 1 && right.len() == 1 && left != right).then(|| left[0])
-            };
-            let depth = with("depth");
-            let choice = if depth.len() == 1 { Some(depth[0]) } else { None };
-            let choice = choice.or_else(|| pair("left", "right")).or_else(|| pair("cam0", "cam1"));
-            let choice = choice.or_else(|| pair("1", "2")).or_else(|| pair("0", "1"));
-            choice.ok_or_else(|| several(&found, &distinct))?
-        }
-    };
-    let others: Vec<String> =
-        distinct.iter().filter(|&&at| at != taken).take(5).map(|&at| format!("`{}`", found[at].path)).collect();
-    let Found { path, camera } = found.swap_remove(taken);
-    if others.is_empty() {
-        return Ok(camera);
-    }
-    let note = format!("of {} cameras `{path}` is taken, not {}", distinct.len(), others.join(", "));
-    Ok(camera.named(path).note(note))
-}
-
-fn several(found: &[Found], distinct: &[usize]) -> crate::error::Error {
-    let shown = |&at: &usize| {
-        let Found { path, camera } = &found[at];
-        let camera = camera.intrinsics;
-        format!("`{path}` {},{},{},{}", camera.fx, camera.fy, camera.cx, camera.cy)
-    };
-    let listed: Vec<String> = distinct.iter().take(5).map(shown).collect();
-    let more = if distinct.len() > 5 { " and others" } else { "" };
-    unreadable(format!(
-        "it has several cameras that differ: {}{more}; give the one of the map with --intrinsics",
-        listed.join("; ")
-    ))
 }

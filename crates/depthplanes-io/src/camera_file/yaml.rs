@@ -217,7 +217,7 @@ fn flow(rest: &mut &str, depth: usize) -> Result<Value, String> {
             Some('[' | '{') => items.push(flow(rest, depth + 1)?),
             Some(_) => match flow(rest, depth + 1)? {
                 // `[1 0 2; 0 1 3]`
-                Value::String(words) => match super::tree::words(&words) {
+                Value::String(words) => match super::names::words(&words) {
                     Some(numbers) if numbers.len() > 1 => items.extend(numbers.into_iter().map(number)),
                     _ => items.push(Value::String(words)),
                 },

@@ -52,7 +52,8 @@ pub(super) fn huge(report: &Report<'_>) -> Option<String> {
     })
 }
 
-/// Scatter of a plane's points, as a share of its depth, beyond which it is no surface. On recorded frames it is below 0.05.
+/// Scatter of a plane's points, as a share of its depth, beyond which it is no surface. Of 136 planes on more than a tenth of
+/// 56 recorded frames it is 0.13 on a far one of a stereo camera, and at most 0.03 on all others.
 const SCATTER: f64 = 0.15;
 
 /// A plane whose points scatter as those of no surface do.

@@ -85,7 +85,29 @@ pub struct Report<'a> {
     pub notes: &'a [String],
 }
 
-impl Report<'_> {
+impl<'a> Report<'a> {
+    /// A report of what a method found, without all that may be added to it.
+    pub fn new(
+        source: &'a str,
+        frame: &'a Frame,
+        method: &'static MethodInfo,
+        parameters: &'a [f64],
+        detection: &'a Detection,
+    ) -> Self {
+        Report {
+            source,
+            frame,
+            method,
+            parameters,
+            detection,
+            coplanar: None,
+            outlines: None,
+            times: None,
+            legend: false,
+            notes: &[],
+        }
+    }
+
     /// Whether an output has all that it needs.
     pub fn has_what_it_takes(&self, output: &Output) -> bool {
         let has_curved = self.detection.curved.is_some() || !output.needs_curved;

@@ -30,7 +30,7 @@ pub(super) fn labels(frame: &Frame, probe: &Probe) -> Option<String> {
 
 /// Grey levels.
 pub(super) fn eight_bits(frame: &Frame, _: &Probe) -> Option<String> {
-    let is_guess = frame.encoding == "grey" && frame.provenance.encoding != "stated";
+    let is_guess = frame.encoding == "grey" && frame.provenance.is_guess();
     if is_guess && matches!(frame.pixels, Pixels::U8(_)) {
         return Some(
             "8 bits a pixel: a picture to look at, a photograph or a label image rather than depth? It is read as grey \
@@ -49,16 +49,15 @@ pub(super) fn eight_bits(frame: &Frame, _: &Probe) -> Option<String> {
     })
 }
 
-/// How much larger values are in the lower half of a picture of disparity or inverse depth. What is near is mostly below:
-/// on 45 recorded maps of depth it is 1.14 times at the most, on 16 of disparity 1.05 to 3.3 times.
+/// How much larger values have to be in the lower half of a picture to look like disparity or inverse depth: what is near is
+/// mostly below. On 58 recorded maps of depth they are 1.14 times as large at the most, on 16 of 21 maps of disparity more than 1.3 times.
 const GROWS: f64 = 1.3;
 
 /// Values that grow towards the bottom of the picture, taken for depth by a guess.
 pub(super) fn grows_below(frame: &Frame, probe: &Probe) -> Option<String> {
-    let is_guess = frame.provenance.encoding != "stated" && frame.provenance.preset.is_none();
     let Measure::Depth { .. } = frame.sensor.measure else { return None };
     let times = probe.below_to_above.filter(|&times| times > GROWS)?;
-    (is_guess && !is_small(frame) && probe.levels().len() > 32).then(|| {
+    (frame.provenance.is_guess() && !is_small(frame) && probe.levels().len() > 32).then(|| {
         format!(
             "values are {times:.1} times as large in the lower half of the picture as in the upper one, as disparity and inverse \
              depth are: try --encoding inverse-depth, or --disparity; state the encoding if it is depth"
@@ -68,7 +67,6 @@ pub(super) fn grows_below(frame: &Frame, probe: &Probe) -> Option<String> {
 
 /// Values over the whole range of a type, as programs make that scale relative depth for a picture.
 pub(super) fn whole_range(frame: &Frame, probe: &Probe) -> Option<String> {
-    let is_guess = frame.provenance.encoding != "stated" && frame.provenance.preset.is_none();
     let Measure::Depth { .. } = frame.sensor.measure else { return None };
     let (lowest, (largest, _)) = (probe.valid.first()?, probe.largest()?);
     let is_whole = match frame.pixels {
@@ -76,7 +74,7 @@ pub(super) fn whole_range(frame: &Frame, probe: &Probe) -> Option<String> {
         Pixels::U16(_) => largest > 60_000.0 && *lowest < 6_500.0,
         Pixels::F32(_) => (0.9..=1.0).contains(&largest) && *lowest < 0.1,
     };
-    (is_guess && is_whole && probe.levels().len() > 256).then(|| {
+    (frame.provenance.is_guess() && is_whole && probe.levels().len() > 256).then(|| {
         "the values fill a whole range, as relative depth of a network does: try --encoding inverse-depth if large values are \
          near; if they are far, there are no metres without the unit (--scale)"
             .to_string()

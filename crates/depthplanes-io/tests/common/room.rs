@@ -39,18 +39,8 @@ pub fn planes(frame: &Frame) -> (Vec<Plane>, f64, Vec<String>) {
     let method = depthplanes::methods::default();
     let mut detector = Detector::default().sensor(frame.sensor);
     let detection = detector.detect(frame.view().unwrap()).unwrap();
-    let report = Report {
-        source: "room",
-        frame,
-        method,
-        parameters: &method.defaults(),
-        detection,
-        coplanar: None,
-        outlines: None,
-        times: None,
-        legend: false,
-        notes: &[],
-    };
+    let defaults = method.defaults();
+    let report = Report::new("room", frame, method, &defaults, detection);
     let notes = frame.warnings.iter().cloned().chain(doubts(&report)).collect();
     (detection.planes.clone(), detection.labelled_share(), notes)
 }

@@ -75,18 +75,8 @@ fn plane(label: u16, labels: &[u16]) -> Plane {
 }
 
 pub fn report<'a>(frame: &'a Frame, detection: &'a Detection) -> Report<'a> {
-    Report {
-        source: "room, left.png",
-        frame,
-        method: depthplanes::methods::find("ngaf").unwrap(),
-        parameters: &[1.5, 32.0, 0.0],
-        detection,
-        coplanar: None,
-        outlines: None,
-        times: None,
-        legend: false,
-        notes: &[],
-    }
+    let ngaf = depthplanes::methods::find("ngaf").unwrap();
+    Report::new("room, left.png", frame, ngaf, &[1.5, 32.0, 0.0], detection)
 }
 
 /// Compares bytes with tests/golden/NAME; with DEPTHPLANES_GOLDEN=update it writes them instead.

@@ -1,0 +1,84 @@
+//! The flags of `detect` that say what comes out, and how it runs.
+
+use super::flags;
+use clap::{Arg, builder::PossibleValuesParser};
+use depthplanes::Coplanar;
+use depthplanes::outline::DEFAULT_TOLERANCE_PX;
+use depthplanes_io::outputs::{OUTPUTS, Output};
+
+pub(super) fn output_flags() -> Vec<Arg> {
+    let flag = |output: &'static Output| {
+        let written = |about| format!("Write the {about} ({})", output.extensions());
+        let short = output.about.split([':', ';', ',']).next().unwrap_or_default();
+        flags::path(output.name, "FILE").help(written(short)).long_help(written(output.about))
+    };
+    let mut all: Vec<Arg> = OUTPUTS.iter().map(flag).collect();
+    let names: Vec<String> = OUTPUTS.iter().map(|output| output.file.to_string()).collect();
+    let only = Arg::new("only").long("only").value_name("A,B,..").value_delimiter(',').requires("out-dir");
+    let only = only.value_parser(PossibleValuesParser::new(OUTPUTS.iter().map(|output| output.name)));
+    all.extend([
+        flags::path("out-dir", "DIR")
+            .help("Write all outputs of each input into this folder")
+            .long_help(format!("Write all outputs of each input into this folder, as INPUT.{}", names.join(", INPUT."))),
+        only.hide_possible_values(true).help("With --out-dir: write only these, such as `overlay,planes`").long_help(
+            format!("With --out-dir: write only these; names are {}", output_names()),
+        ),
+        flags::path("table", "FILE").help("Write the planes of all inputs into one file (.csv or .jsonl)").long_help(
+            "Write the planes of all inputs into one file: .csv has a row for each plane, .jsonl a line for each input. \
+             Inputs that fail are left out and named",
+        ),
+        flags::switch("legend", "Put a legend beside the overlay and numbers on its planes"),
+        flags::switch(
+            "curved",
+            "Report curved surfaces as well: in the summary, in the JSON record and hatched on the overlay",
+        ),
+        outlines_flag(),
+        flags::pixels("min-hole").requires("outlines").help(
+            "With --outlines: fill holes of fewer pixels than this, in the mesh too; by default none are filled",
+        ),
+        flags::switch("json", "Print the record as JSON; one line for each of several inputs"),
+        flags::count("rows", "N").default_value("20").help("Planes in the printed table"),
+    ]);
+    all.into_iter().map(|arg| arg.help_heading("Output")).collect()
+}
+
+fn output_names() -> String {
+    OUTPUTS.iter().map(|output| output.name).collect::<Vec<_>>().join(", ")
+}
+
+pub(super) fn merge_coplanar_flag() -> Arg {
+    let Coplanar { angle_deg, distance_m, .. } = Coplanar::default();
+    let both = format!("{angle_deg},{distance_m}");
+    let long = format!(
+        "Join separate pieces of one plane whose normals differ by at most DEG degrees and whose middles lie \
+         within M metres of each other's plane [default {both}]; needs unit and camera"
+    );
+    let flag = flags::numbers::<2>("merge-coplanar", "DEG,M").long("merge-coplanar");
+    flag.num_args(0..=1)
+        .require_equals(true)
+        .default_missing_value(both)
+        .help("Join separate pieces of one plane; needs unit and camera")
+        .long_help(long)
+        .help_heading(flags::METHOD)
+}
+
+fn outlines_flag() -> Arg {
+    let long = format!(
+        "Put the planes' outlines into the JSON record and onto the overlay, and simplify those of the mesh, \
+         to within PX pixels [default {DEFAULT_TOLERANCE_PX}; 0 keeps every corner]"
+    );
+    // With `=`, so that the word after the flag is never taken for its value.
+    let flag = flags::number("outlines", "PX").long("outlines").num_args(0..=1).require_equals(true);
+    flag.default_missing_value(DEFAULT_TOLERANCE_PX.to_string())
+        .help("Put outlines (polygons) into the JSON record and onto the overlay")
+        .long_help(long)
+}
+
+pub(super) fn running_flags() -> Vec<Arg> {
+    let all = [
+        flags::count("jobs", "N").default_value("1").help("Inputs worked on at the same time"),
+        flags::count("threads", "N").default_value("1").help("Threads for each map; the answer does not depend on it"),
+        flags::count("repeat", "N").help("Measure the detection alone, N times after a warm-up; truest with one job"),
+    ];
+    all.into_iter().map(|arg| arg.help_heading("Running")).collect()
+}
