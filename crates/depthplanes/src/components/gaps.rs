@@ -1,7 +1,9 @@
-//! Bridges over gaps: pieces of a region that are two steps apart are one plane.
+//! Bridges over gaps: pieces of a region with nothing but missing pixels between them are one plane.
 //!
 //! In: the region image and its groups. Out: fewer groups. Groups are 4-connected, and where a sensor sees a surface
-//! at a grazing angle half of the pixels are missing, so that what was measured of a plane falls apart. If its pixels
+//! at a grazing angle half of the pixels are missing, so that what was measured of a plane falls apart. Along a row or a
+//! column pieces are one over up to [`WIDEST`] missing pixels: a grid of lines that nothing was measured on does not
+//! divide a wall. If its pixels
 //! are missing at random, a plane holds together by its pixels' four next neighbours while 59 % are there, and by the
 //! twelve that are one or two steps away while 29 % are (the thresholds of site percolation on the square lattice).
 
@@ -14,6 +16,10 @@ use std::ops::Range;
 
 /// Rows of a part of the map; the parts are the same on any number of threads.
 const ROWS: usize = 64;
+
+/// Most missing pixels in a row or a column over which two pieces are one: the sides of two tiles, since regions of tiles
+/// go on beyond one that is empty.
+const WIDEST: usize = 8;
 
 /// The steps to pixels two steps away, each with the pixels that lie between.
 const STEPS: [([isize; 2], [[isize; 2]; 2]); 4] =
@@ -55,7 +61,7 @@ impl Bridge {
                 || part.list(rows, map, image, groups),
             );
         });
-        reserve_to(pairs, 2 * image.len());
+        reserve_to(pairs, 4 * image.len());
         parts.iter().for_each(|part| pairs.extend(&part.pairs));
         grouper.unite(pairs);
     }
@@ -65,7 +71,7 @@ impl RowPairs {
     #[inline(always)]
     fn list(&mut self, rows: Range<usize>, map: Measured<'_>, image: &[u16], groups: &Groups) {
         // On a chequered image every second pixel is two steps from four others.
-        reserve_to(&mut self.pairs, 2 * ROWS * map.stride);
+        reserve_to(&mut self.pairs, 4 * ROWS * map.stride);
         for v in rows {
             let [here, below, second] = [v, v + 1, v + 2].map(|v| groups.masks(v));
             for word in 0..here[0].len() {
@@ -82,6 +88,28 @@ impl RowPairs {
                 for (way, (to, between)) in ways.into_iter().zip(STEPS) {
                     bits(way).for_each(|bit| self.list_pair([64 * word + bit, v], to, between, map, image, groups));
                 }
+                let ends = [own & !right & !ahead(here[0], word, 2), own & !under & !ahead(second[0], word, 0)];
+                for (ends, along) in ends.into_iter().zip([[1, 0], [0, 1]]) {
+                    bits(ends).for_each(|bit| self.list_across([64 * word + bit, v], along, map, image, groups));
+                }
+            }
+        }
+    }
+
+    /// Lists the groups of a pixel and of the next one along a row or a column that was measured, if both have one label.
+    #[inline(always)]
+    fn list_across(&mut self, from: [usize; 2], along: [usize; 2], map: Measured<'_>, image: &[u16], groups: &Groups) {
+        let Measured { numbers, stride, height } = map;
+        let [u, v] = from;
+        let room = if along[0] > 0 { stride - u } else { height - v };
+        let step = along[0] + along[1] * stride;
+        let at = v * stride + u;
+        let next = (1..room.min(WIDEST + 2)).find(|steps| !numbers[at + steps * step].is_nan());
+        if let Some(steps) = next.filter(|&steps| steps > 2 && image[at + steps * step] == image[at]) {
+            let pair @ [a, b] =
+                [from, [0, 1].map(|axis| from[axis] + steps * along[axis])].map(|place| groups.at(place));
+            if a != b && self.pairs.last() != Some(&pair) {
+                self.pairs.push(pair);
             }
         }
     }
@@ -117,7 +145,7 @@ mod tests {
     use crate::util::random::Random;
 
     /// The group of each pixel by a plain flood, numbered by first pixels: over the four neighbours of the same label, and
-    /// over two steps if some pixel between is missing.
+    /// over gaps.
     fn flood(
         image: &[u16],
         q: &[f32],
@@ -125,14 +153,13 @@ mod tests {
         [width, height]: [usize; 2],
         over_gaps: bool,
     ) -> Vec<Option<u32>> {
-        let steps: Vec<([isize; 2], Vec<[isize; 2]>)> = vec![
-            ([1, 0], vec![]),
-            ([0, 1], vec![]),
-            ([2, 0], vec![[1, 0]]),
-            ([0, 2], vec![[0, 1]]),
-            ([1, 1], vec![[1, 0], [0, 1]]),
-            ([-1, 1], vec![[-1, 0], [0, 1]]),
-        ];
+        // Along a row or a column all pixels between have to be missing, on a diagonal one of two.
+        let mut steps: Vec<([isize; 2], Vec<[isize; 2]>)> =
+            vec![([1, 1], vec![[1, 0], [0, 1]]), ([-1, 1], vec![[-1, 0], [0, 1]])];
+        for length in 1..=WIDEST as isize + 1 {
+            steps.push(([length, 0], (1..length).map(|step| [step, 0]).collect()));
+            steps.push(([0, length], (1..length).map(|step| [0, step]).collect()));
+        }
         let mut group = vec![None; width * height];
         let mut groups = 0;
         for first in 0..width * height {
@@ -152,7 +179,10 @@ mod tests {
                         let Some([u, v]) = place(*step) else { continue };
                         let is_missing =
                             |step: &[isize; 2]| place(*step).is_some_and(|[u, v]| q[v * stride + u].is_nan());
-                        let joins = between.is_empty() || over_gaps && between.iter().any(is_missing);
+                        let is_diagonal = step[0] * step[1] != 0;
+                        let are_missing =
+                            if is_diagonal { between.iter().any(is_missing) } else { between.iter().all(is_missing) };
+                        let joins = between.is_empty() || over_gaps && are_missing;
                         let same = image[v * stride + u] == image[at / width * stride + at % width];
                         if joins && same && group[v * width + u].is_none() {
                             group[v * width + u] = Some(groups);
@@ -167,13 +197,13 @@ mod tests {
     }
 
     #[test]
-    fn pieces_are_joined_over_missing_pixels_as_a_plain_flood_of_two_steps_joins_them() {
+    fn pieces_are_joined_over_missing_pixels_as_a_plain_flood_joins_them() {
         let (mut random, mut bridge, mut grouper) = (Random::new(6), Bridge::default(), ConnectedComponents::default());
         for round in 0..60 {
             // More rows than a part has; more columns than a word has.
             let [width, height]: [usize; 2] = [[1, 1], [130, 70], [64, 5], [63, 130], [2, 9]][round % 5];
             let stride = width.next_multiple_of(64);
-            let (missing, off) = (random.between(0.0, 0.7), random.between(0.0, 0.3));
+            let (missing, off) = (random.between(0.0, 0.85), random.between(0.0, 0.3));
             let size = random.whole(2, 20);
             let (mut image, mut q) = (vec![0; stride * height], vec![f32::NAN; stride * height]);
             for (v, u) in (0..height).flat_map(|v| (0..width).map(move |u| (v, u))) {

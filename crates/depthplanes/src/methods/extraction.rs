@@ -107,8 +107,8 @@ impl Extraction {
         Ok(())
     }
 
-    /// The curved regions of a region image (0 = none): connected pieces of one region with more than `min` pixels. `old`:
-    /// memory to reuse.
+    /// The curved regions of a region image (0 = none): connected pieces of one region with more than `min` pixels; `unite`
+    /// may put groups together before they are counted. `old`: memory to reuse.
     ///
     /// # Errors
     /// [`crate::Error::TooManyPlanes`] if they are more than labels can name.
@@ -117,11 +117,14 @@ impl Extraction {
         map: &DepthView<'_, T>,
         ids: &DepthView<'_, u16>,
         min: u32,
+        unite: impl FnOnce(&mut ConnectedComponents),
         job: &Job<'_>,
         old: Option<Curved>,
     ) -> Result<Curved> {
         let Extraction { components, selection, statistics } = self;
-        let groups = components.group(ids, &Connectivity::new(ids.validity(), 0.0)?, job.threads);
+        components.group(ids, &Connectivity::new(ids.validity(), 0.0)?, job.threads);
+        unite(components);
+        let groups = components.groups();
         selection.select(groups, min)?;
         statistics.tally(map, selection.runs(groups), 0, &job.sensor, job.threads);
         let Curved { mut labels, mut regions } = old.unwrap_or_default();
@@ -154,7 +157,7 @@ mod tests {
         let job = Job { sensor: Sensor::default(), threads: 1, curved: true, joiner: None, observer: &mut |_| () };
         let mut old = None;
         for (min, expected) in [(0, &[12, 6, 4][..]), (4, &[12, 6]), (5, &[12, 6]), (6, &[12]), (12, &[])] {
-            let found = Extraction::default().extract_curved(&map, &view, min, &job, old).unwrap();
+            let found = Extraction::default().extract_curved(&map, &view, min, |_| (), &job, old).unwrap();
             assert_eq!(
                 found.regions.iter().map(|region| region.pixel_count).collect::<Vec<_>>(),
                 expected,

@@ -16,7 +16,7 @@ use crate::util::simd::vectorised;
 mod tests;
 
 /// Smallest and largest factor.
-const FACTORS: [f64; 2] = [2.0, 8.0];
+const FACTORS: [f64; 2] = [2.0, 16.0];
 /// Rows that are compared first, and rows between two checks of all others.
 const FIRST: usize = 16;
 /// Least evidence, bits, that the columns which differ are not borders by chance; for columns and for rows. Some
@@ -33,7 +33,7 @@ pub struct Enlargement<'a> {
     pub columns: &'a [u32],
     /// The first row of each row of the source.
     pub rows: &'a [u32],
-    /// Columns and rows of the map for each source pixel, 2 to 8: source pixel i has its centre at `(i + 0.5) factor
+    /// Columns and rows of the map for each source pixel, 2 to 16: source pixel i has its centre at `(i + 0.5) factor
     /// - 0.5`.
     pub factor: [f64; 2],
 }
@@ -159,39 +159,81 @@ impl Axis {
 
     /// Whether all columns that differ are borders of source pixels enlarged by that factor, and enough of them.
     fn fits(&self, factor: f64) -> bool {
-        self.evidence(factor) >= CERTAIN && self.phase(factor).is_some()
+        self.evidence(factor) >= CERTAIN
     }
 
     /// Lists the first columns of source pixels.
     fn list(&mut self, factor: f64) {
-        let length = self.differs.len();
-        let phase = self.phase(factor).unwrap_or(0.0);
-        let borders = (0..).map(|k| (f64::from(k) * factor + phase).ceil().max(0.0) as u32);
-        self.starts.extend(borders.take_while(|&border| (border as usize) < length));
+        let Axis { differs, starts } = self;
+        let Some(Borders { phase, tie }) = Borders::of(differs, factor) else { return };
+        let length = differs.len() as u32;
+        let differs = |border: u32| differs.get(border as usize) == Some(&true);
+        let borders = (1..).map(|k| {
+            let place = f64::from(k) * factor + phase;
+            let rounded = [place, place - tie, place + tie].map(|place| place.ceil().max(0.0) as u32);
+            rounded.into_iter().find(|&border| differs(border)).unwrap_or(rounded[0])
+        });
+        starts.push(0);
+        starts.extend(borders.skip_while(|&border| border == 0).take_while(|&border| border < length));
     }
 
-    /// Evidence, bits, that the columns which differ are not all borders by chance: one column in `factor` is a border.
+    /// Evidence, bits, that the columns which differ are not all borders of source pixels by chance; none if they are not.
     fn evidence(&self, factor: f64) -> f64 {
-        self.differs.iter().filter(|differs| **differs).count() as f64 * factor.log2()
-    }
-
-    /// The phase, above -1 and up to 0, for which all columns that differ are at `ceil(k factor + phase)`: 0 where a
-    /// column shows the source pixel under its left edge, -0.5 where it shows the one under its centre.
-    fn phase(&self, factor: f64) -> Option<f64> {
-        let [mut low, mut high] = [-1.0f64, 0.0f64];
-        for (at, _) in self.differs.iter().enumerate().filter(|(_, differs)| **differs) {
-            let border = ((at + 1) as f64 / factor + TINY).floor() * factor;
-            let off = at as f64 - border;
-            (low, high) = (low.max(off - 1.0), high.min(off));
-            if low > high - TINY {
-                return None;
-            }
-        }
-        let holds = |phase: &f64| low + TINY < *phase && *phase <= high + TINY;
-        // Away from the numbers at which rounding would decide.
-        Some([-0.5, 0.0].into_iter().find(holds).unwrap_or(high) - TINY)
+        let Some(borders) = Borders::of(&self.differs, factor) else { return 0.0 };
+        self.differs.iter().filter(|differs| **differs).count() as f64 * (factor / borders.at_most()).log2()
     }
 }
+
+/// Where source pixels begin: at `ceil(k factor + phase)`.
+#[derive(Clone, Copy, Debug)]
+struct Borders {
+    /// Above -1 and up to 0: -0.5 where a column shows the source pixel under its centre, 0 where it shows the one under its
+    /// left edge, others where the map was cropped.
+    phase: f64,
+    /// How far from a whole pixel a border may be that is rounded either way.
+    tie: f64,
+}
+
+impl Borders {
+    /// The borders at which all columns that differ lie.
+    fn of(differs: &[bool], factor: f64) -> Option<Borders> {
+        let borders = || (0..differs.len()).filter(|&at| differs[at]).map(|at| at as f64);
+        let are_of_centres = |tie: f64| {
+            borders().all(|at| {
+                let before = ((at - OF_CENTRES + tie) / factor + TINY).floor() * factor;
+                before > at - 1.0 - OF_CENTRES - tie + TINY
+            })
+        };
+        // Away from the numbers at which rounding would decide.
+        let of_centres = |tie| Some(Borders { phase: OF_CENTRES - TINY, tie }).filter(|_| are_of_centres(tie));
+        let cropped = || {
+            let [mut low, mut high] = [-1.0f64, 0.0f64];
+            for at in borders() {
+                let off = at - ((at + 1.0) / factor + TINY).floor() * factor;
+                (low, high) = (low.max(off - 1.0), high.min(off));
+                if low > high - TINY {
+                    return None;
+                }
+            }
+            let of_edges = low + TINY < 0.0 && 0.0 <= high + TINY;
+            Some(Borders { phase: if of_edges { 0.0 } else { high } - TINY, tie: 0.0 })
+        };
+        let rounded = || if factor.fract() == 0.0 { None } else { of_centres(TIE) };
+        of_centres(0.0).or_else(cropped).or_else(rounded)
+    }
+
+    /// Columns for each source pixel that may be its border: every second is rounded either way at most.
+    fn at_most(&self) -> f64 {
+        if self.tie > 0.0 { 1.5 } else { 1.0 }
+    }
+}
+
+/// The phase of columns that show the source pixel under their centres.
+const OF_CENTRES: f64 = -0.5;
+
+/// How far from a whole pixel a border may be that is rounded either way: programs that enlarge maps add up the places of
+/// centres in single precision or in fixed point. By a whole factor none is there.
+const TIE: f64 = 0.01;
 
 /// Far below the distance of a source pixel's border from whole pixels, far above the rounding error of pixel counts.
 const TINY: f64 = 1e-6;

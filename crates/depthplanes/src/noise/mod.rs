@@ -16,6 +16,7 @@ mod rounding;
 pub(crate) mod scales;
 pub(crate) mod sensor_noise;
 mod space;
+pub(crate) mod sparse;
 mod steps;
 mod table;
 

@@ -145,10 +145,19 @@ impl Scales {
     /// Looks at cells that have most of their usual pixels, as have their neighbours on either side.
     #[inline(always)]
     fn look_at_each(&mut self, cells: Cells, cell: impl Fn(usize) -> Cell) {
+        self.look_at_some(cells, (cells.columns * cells.rows).div_ceil(SAMPLE).max(1), &cell);
+        // A sample may miss every second tile.
+        if cells.level == 0 && self.tiles.len() < FEW {
+            self.look_at_some(cells, 1, &cell);
+        }
+    }
+
+    /// Looks at one cell of `stride`.
+    #[inline(always)]
+    fn look_at_some(&mut self, cells: Cells, stride: usize, cell: impl Fn(usize) -> Cell) {
         let Cells { level, columns, rows, usual } = cells;
         // A map without a valid pixel has no usual tile.
         let least = (WHOLE * usual * (1 << (2 * level)) as f32).max(1.0);
-        let stride = (columns * rows).div_ceil(SAMPLE).max(1);
         // Successive rows begin at different columns, so that no column is left out.
         for row in 1..rows.saturating_sub(1) {
             for column in (1 + row * 7 % stride..columns.saturating_sub(1)).step_by(stride) {
@@ -186,6 +195,16 @@ impl Scales {
     #[inline(always)]
     fn errors_of(&mut self, space: Space, rounding: &Rounding) -> Option<Errors> {
         let Scales { bends: [fine, larger @ ..], tiles, numbers, steep: memory, .. } = self;
+        if fine.len() < FEW {
+            // Tiles that lie apart show how their own pixels scatter, and nothing else.
+            let of_mean = 13.0 / MEDIAN_OF_TILE * MEDIAN_OF_SQUARE / 16.0;
+            fine.extend(tiles.iter().map(|&Scatter { q, slope, square }| Bend {
+                q,
+                slope,
+                square: of_mean as f32 * square,
+                residual: 0.0,
+            }));
+        }
         if fine.len() < FEW {
             return None;
         }

@@ -5,8 +5,8 @@
 //! enough to divide a region differently here and there. Read back as 1,234 mm, it gives what the map of millimetres
 //! gives, to the last bit.
 
-use super::enlarged::Source;
 use super::pipeline::Runner;
+use super::source::Source;
 use crate::camera::Measure;
 use crate::detection::{Detection, MapFit};
 use crate::error::Result;

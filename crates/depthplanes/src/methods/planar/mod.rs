@@ -10,7 +10,6 @@ mod counts;
 mod crease;
 mod curvature;
 mod curved;
-mod enlarged;
 mod explain;
 mod extend;
 mod grid;
@@ -23,6 +22,7 @@ mod pyramid;
 mod redundant;
 mod refine;
 mod region;
+mod source;
 mod thresholds;
 mod tiles;
 mod trace;
@@ -62,8 +62,8 @@ impl Parameters for Planar {
     }
 }
 
-/// The method on any map: on the counts that floats are ([`counts`]), and on the source of an enlarged map
-/// ([`enlarged`]).
+/// The method on any map: on the counts that floats are ([`counts`]), and on what a map was measured at
+/// ([`source`]).
 struct Whole {
     runner: Runner,
     counts: Counts,

@@ -23,9 +23,17 @@ fn every_factor_is_found_and_the_source_is_as_it_was() {
     let mut finder = EnlargementFinder::default();
     for noise_mm in [0.0, 10.0] {
         let source = source(noise_mm);
-        for [x, y] in
-            [[2.0, 2.0], [2.5, 2.5], [3.0, 3.0], [4.0, 4.0], [7.5, 7.5], [8.0, 8.0], [2.5, 4.0], [3.125, 3.125]]
-        {
+        for [x, y] in [
+            [2.0, 2.0],
+            [2.5, 2.5],
+            [3.0, 3.0],
+            [4.0, 4.0],
+            [7.5, 7.5],
+            [10.0, 10.0],
+            [16.0, 16.0],
+            [2.5, 4.0],
+            [3.125, 3.125],
+        ] {
             for edge in [0.0, 0.5] {
                 let [width, height] = [(64.0 * x) as usize, (48.0 * y) as usize];
                 let pixels = enlarged(&source, [width, height], edge);

@@ -1,9 +1,12 @@
-//! Maps that were enlarged by repeating pixels are worked on at their original size.
+//! Maps with more pixels than measurements are worked on at the size at which they were measured.
 //!
-//! In: a map. Out: its detection. For an enlarged map ([`EnlargementFinder`]) the stages see the source: one value a
-//! pixel, seen by a camera of as many pixels. Its planes are then painted on the whole map, grouped, selected and
-//! fitted there, so that `min`, areas and places are those of the map that was given. Repeated pixels say no more
-//! than one: errors of planes are those of the source's pixels.
+//! In: a map. Out: its detection. Of a map that was enlarged by repeating pixels ([`EnlargementFinder`]) the stages see
+//! the source: one value a pixel, seen by a camera of as many pixels. Of a map that was measured at few of its pixels
+//! ([`SparseFinder`]) they see one measured pixel of each bin, again by a camera of as many pixels. What was found is
+//! painted on the whole map: the label of its source pixel for each that was repeated, the nearest of the planes
+//! around its bin for each that was measured. There it is grouped, selected and fitted, so that `min`, areas and places
+//! are those of the map that was given. Repeated pixels say no more than one: errors of planes are those of the
+//! source's pixels.
 
 use super::explain::explain;
 use super::parameters::Planar;
@@ -16,29 +19,114 @@ use crate::explanation::{Explanation, Finding, Suggestion, Verdict};
 use crate::map::{DepthView, Pixel, Validity};
 use crate::methods::extraction::{Extraction, STAGES, Wanted};
 use crate::methods::method::{Job, MethodInfo};
+use crate::methods::spread::Spreader;
 use crate::methods::tries::Tries;
-use crate::noise::{Enlargement, EnlargementFinder};
+use crate::noise::scales::RAY;
+use crate::noise::sparse::{EMPTY, Sparse, SparseFinder};
+use crate::noise::{Enlargement, EnlargementFinder, NoiseModel, Space};
 use crate::sensor::Sensor;
 use crate::util::memory::reserve_to;
 
 /// Fewest pixels of the source that are asked of a plane: those of a tile. `min` may be less than that.
 const TILE: u32 = 16;
 
+/// What the stages see instead of a map.
+enum Reduced<'a> {
+    /// Each pixel of the source once.
+    Repeated(Enlargement<'a>),
+    /// One measured pixel of each bin.
+    Sparse(Sparse<'a>),
+}
+
+impl Reduced<'_> {
+    /// Columns and rows of the map for one of the source.
+    fn factor(&self) -> [f64; 2] {
+        match self {
+            Reduced::Repeated(enlargement) => enlargement.factor,
+            Reduced::Sparse(sparse) => sparse.side.map(|side| side as f64),
+        }
+    }
+
+    /// Where a source pixel lies among those that it stands for, columns and rows from the first.
+    fn centre(&self) -> [f64; 2] {
+        match self {
+            Reduced::Repeated(enlargement) => enlargement.factor.map(|factor| (factor - 1.0) / 2.0),
+            Reduced::Sparse(sparse) => sparse.centre,
+        }
+    }
+
+    /// How far off that it is, source pixels, one standard deviation.
+    fn jitter(&self) -> f64 {
+        match self {
+            Reduced::Repeated(_) => 0.0,
+            Reduced::Sparse(sparse) => sparse.jitter,
+        }
+    }
+
+    /// The source pixel of a pixel.
+    fn place(&self, at: [usize; 2]) -> [usize; 2] {
+        match self {
+            Reduced::Repeated(enlargement) => [0, 1].map(|axis| {
+                let firsts = [enlargement.columns, enlargement.rows][axis];
+                firsts.partition_point(|&first| first as usize <= at[axis]) - 1
+            }),
+            Reduced::Sparse(sparse) => [0, 1].map(|axis| at[axis] / sparse.side[axis]),
+        }
+    }
+
+    /// What `explain` says of it.
+    fn finding(&self, [column, row]: [usize; 2]) -> Finding {
+        let subject = format!("the pixel's source, column {column}, row {row}: what follows is of the source");
+        let what = match self {
+            Reduced::Repeated(_) => "the map was enlarged by repeating pixels",
+            Reduced::Sparse(_) => "the map was measured at few of its pixels; one stands for each bin",
+        };
+        let [x, y] = self.factor();
+        Finding::new("map", subject, what).with("columns", x, "").with("rows", y, "")
+    }
+
+    /// The source of a map.
+    fn source<'a, T: Pixel>(&self, map: &DepthView<'_, T>, pixels: &'a mut Vec<f32>) -> Result<DepthView<'a, f32>> {
+        match self {
+            Reduced::Repeated(enlargement) => shrunk(map, enlargement, pixels),
+            Reduced::Sparse(sparse) => chosen(map, sparse, pixels),
+        }
+    }
+}
+
+/// Finds out whether the stages are to see something else than the map itself; reuses its memory.
+#[derive(Default)]
+struct Finder {
+    enlargement: EnlargementFinder,
+    sparse: SparseFinder,
+}
+
+impl Finder {
+    fn find<T: Pixel>(&mut self, map: &DepthView<'_, T>) -> Option<Reduced<'_>> {
+        let Finder { enlargement, sparse } = self;
+        match enlargement.find(map) {
+            Some(enlargement) => Some(Reduced::Repeated(enlargement)),
+            None => sparse.find(map).map(Reduced::Sparse),
+        }
+    }
+}
+
 /// The source of a map and what was found in it; reuses its memory.
 #[derive(Default)]
 pub(super) struct Source {
-    finder: EnlargementFinder,
+    finder: Finder,
     /// One value a source pixel; single precision holds integers of 16 bits exactly.
     pixels: Vec<f32>,
     found: Detection,
     /// Labels of the source on the whole map.
     image: Vec<u16>,
+    spreader: Spreader,
     extraction: Extraction,
     pieces: Pieces,
 }
 
 impl Source {
-    /// Finds planes in a map, enlarged or not.
+    /// Finds planes in a map, reduced or not.
     ///
     /// # Errors
     /// As [`crate::Detector::detect`].
@@ -49,32 +137,45 @@ impl Source {
         job: &mut Job<'_>,
         out: &mut Detection,
     ) -> Result<()> {
-        let Source { finder, pixels, found, image, extraction, pieces } = self;
-        let Some(enlargement) = finder.find(map) else { return runner.planar(*map, job, out, &mut |_, _, _| ()) };
-        let Planar { min, min_area, .. } = runner.params;
+        let Source { finder, pixels, found, image, spreader, extraction, pieces } = self;
+        let Some(reduced) = finder.find(map) else { return runner.planar(*map, job, out, &mut |_, _, _| ()) };
+        let Planar { min, min_area, inlier_threshold, .. } = runner.params;
         if min_area > 0.0 {
             job.sensor.check_metric("min-area")?;
         }
         let mut noise = None;
-        let view = shrunk(map, &enlargement, pixels)?;
-        with_source(runner, job, &enlargement, |runner, job| {
+        let view = reduced.source(map, pixels)?;
+        with_source(runner, job, &reduced, |runner, job| {
             runner.params.min_area = 0.0;
             runner.planar(view, job, found, &mut |_, _, seen| noise = Some(*seen))
         })?;
-        let labels = enlarge(&found.labels, &enlargement, map, image)?;
+        let noise = noise.map(|noise| of_whole(noise, &reduced, &runner.params));
+        let labels = match (&reduced, &noise) {
+            (Reduced::Sparse(sparse), Some(noise)) => {
+                let space = Space::of(job.sensor.measure);
+                spreader.spread(map, space, sparse, &found.labels, noise, inlier_threshold, image);
+                DepthView::new(&image[..], map.width(), map.height())?.valid_range(1, u16::MAX)?
+            }
+            _ => paint(&found.labels, &reduced, map, image)?,
+        };
         let wanted = Wanted { min, min_area, noise: noise.as_ref(), valid_pixels: map.valid_pixels() };
         extraction.extract_united(map, &labels, &wanted, |components| pieces.join(&labels, components), job, out)?;
-        errors_of_source(found, labels, &enlargement, out);
+        if let Reduced::Repeated(enlargement) = &reduced {
+            errors_of_source(found, labels, enlargement, out);
+        }
         let old = out.curved.take();
         if let Some(curved) = &found.curved {
-            let labels = enlarge(&curved.labels, &enlargement, map, image)?;
-            out.curved = Some(extraction.extract_curved(map, &labels, min, job, old)?);
+            paint(&curved.labels, &reduced, map, image)?;
+            image.iter_mut().zip(&out.labels).filter(|(_, label)| **label > 0).for_each(|(curved, _)| *curved = 0);
+            let labels = DepthView::new(&image[..], map.width(), map.height())?.valid_range(1, u16::MAX)?;
+            let unite = |components: &mut ConnectedComponents| pieces.join(&labels, components);
+            out.curved = Some(extraction.extract_curved(map, &labels, min, unite, job, old)?);
             job.done("label");
         }
         Ok(())
     }
 
-    /// Says why a pixel has a plane or none; of an enlarged map it is the source pixel that is looked at.
+    /// Says why a pixel has a plane or none; of a reduced map it is the source pixel that is looked at.
     ///
     /// # Errors
     /// As [`crate::Detector::explain`].
@@ -86,23 +187,18 @@ impl Source {
         job: &mut Job<'_>,
         at: [usize; 2],
     ) -> Result<Explanation> {
-        let Some(enlargement) = self.finder.find(map) else {
+        let is_measured = map.validity().holds(map.row(at[1])[at[0]]);
+        let Some(reduced) = self.finder.find(map).filter(|_| is_measured) else {
             return explain(runner, info, (*map).into(), job, at);
         };
-        let factor @ [x, y] = enlargement.factor;
-        let place = [0, 1].map(|axis| {
-            let firsts = [enlargement.columns, enlargement.rows][axis];
-            firsts.partition_point(|&first| first as usize <= at[axis]) - 1
-        });
-        let view = shrunk(map, &enlargement, &mut self.pixels)?;
+        let (factor, place) = (reduced.factor(), reduced.place(at));
+        let finding = reduced.finding(place);
+        let view = reduced.source(map, &mut self.pixels)?;
         let mut explanation =
-            with_source(runner, job, &enlargement, |runner, job| explain(runner, info, view.into(), job, place))?;
+            with_source(runner, job, &reduced, |runner, job| explain(runner, info, view.into(), job, place))?;
         let mut out = Detection::default();
         self.run(runner, map, job, &mut out)?;
-        let subject =
-            format!("the pixel's source, column {}, row {}: what follows is of the source", place[0], place[1]);
-        let finding = Finding::new("map", subject, "the map was enlarged by repeating pixels");
-        explanation.findings.insert(0, finding.with("columns", x, "").with("rows", y, ""));
+        explanation.findings.insert(0, finding);
         explanation.verdict = self.verdict(explanation.verdict, runner.params.min, factor, &out, at);
         let values = runner.params.values();
         let planes = out.planes.len();
@@ -150,22 +246,17 @@ fn retried(suggestions: Vec<Suggestion>, tries: &Tries<'_>, [x, y]: [f64; 2]) ->
 fn with_source<R>(
     runner: &mut Runner,
     job: &mut Job<'_>,
-    enlargement: &Enlargement<'_>,
+    reduced: &Reduced<'_>,
     run: impl FnOnce(&mut Runner, &mut Job<'_>) -> Result<R>,
 ) -> Result<R> {
-    let [x, y] = enlargement.factor;
+    let ([x, y], [u, v]) = (reduced.factor(), reduced.centre());
     let params = runner.params;
     // A plane of more than `min` pixels has more than this of the source, whatever the blocks.
     let min = params.min / (x.ceil() * y.ceil()) as u32;
-    runner.params =
-        Planar { min: min.max(params.min.min(TILE)), lateral_noise: params.lateral_noise / (x * y).sqrt(), ..params };
-    // Pixel centres are at integers.
-    let camera = |Intrinsics { fx, fy, cx, cy }| Intrinsics {
-        fx: fx / x,
-        fy: fy / y,
-        cx: (cx + 0.5) / x - 0.5,
-        cy: (cy + 0.5) / y - 0.5,
-    };
+    let lateral_noise = (params.lateral_noise / (x * y).sqrt()).hypot(reduced.jitter());
+    runner.params = Planar { min: min.max(params.min.min(TILE)), lateral_noise, ..params };
+    let camera =
+        |Intrinsics { fx, fy, cx, cy }| Intrinsics { fx: fx / x, fy: fy / y, cx: (cx - u) / x, cy: (cy - v) / y };
     let sensor = Sensor { intrinsics: job.sensor.intrinsics.map(camera), ..job.sensor };
     let observer = &mut *job.observer;
     let mut observe = |stage: &'static str| {
@@ -193,6 +284,48 @@ fn shrunk<'a, T: Pixel>(
     let Validity { low, high, sentinel } = map.validity();
     let view = DepthView::new(&pixels[..], columns.len(), rows.len())?;
     view.missing_value(sentinel.to_f32()).valid_range(low.to_f32(), high.to_f32())
+}
+
+/// One measured pixel for each bin of a sparse map; not a number where there is none.
+fn chosen<'a, T: Pixel>(
+    map: &DepthView<'_, T>,
+    sparse: &Sparse<'_>,
+    pixels: &'a mut Vec<f32>,
+) -> Result<DepthView<'a, f32>> {
+    reserve_to(pixels, map.area());
+    let value = |at: usize| map.row(at / map.width())[at % map.width()].to_f32();
+    pixels.extend(sparse.pixels.iter().map(|&pixel| if pixel == EMPTY { f32::NAN } else { value(pixel as usize) }));
+    DepthView::new(&pixels[..], sparse.size[0], sparse.size[1])
+}
+
+/// The noise of the source's pixels as that of the map's. How far a pixel lies from the middle of its bin is known there.
+fn of_whole(noise: NoiseModel, reduced: &Reduced<'_>, params: &Planar) -> NoiseModel {
+    match reduced {
+        Reduced::Repeated(_) => noise,
+        Reduced::Sparse(sparse) if sparse.jitter > 0.0 => noise.with_ray(params.lateral_noise.max(RAY[0])),
+        Reduced::Sparse(sparse) => noise.with_ray(noise.ray() * ((sparse.side[0] * sparse.side[1]) as f64).sqrt()),
+    }
+}
+
+/// Labels of the source on the measured pixels that each stands for.
+fn paint<'a, T: Pixel>(
+    labels: &[u16],
+    reduced: &Reduced<'_>,
+    map: &DepthView<'_, T>,
+    image: &'a mut Vec<u16>,
+) -> Result<DepthView<'a, u16>> {
+    let sparse = match reduced {
+        Reduced::Repeated(enlargement) => return enlarge(labels, enlargement, map, image),
+        Reduced::Sparse(sparse) => sparse,
+    };
+    reserve_to(image, map.area());
+    let validity = map.validity();
+    for (v, row) in map.rows().enumerate() {
+        let labels = &labels[v / sparse.side[1] * sparse.size[0]..][..sparse.size[0]];
+        let of_pixel = |(u, &value): (usize, &T)| if validity.holds(value) { labels[u / sparse.side[0]] } else { 0 };
+        image.extend(row.iter().enumerate().map(of_pixel));
+    }
+    DepthView::new(&image[..], map.width(), map.height())?.valid_range(1, u16::MAX)
 }
 
 /// Labels of the source as an image of the whole map, in which 0 is missing.
@@ -322,7 +455,7 @@ mod tests {
         let mut told = Vec::new();
         let mut observer = |stage| told.push(stage);
         let mut job = Job { sensor, threads: 1, curved: true, joiner: None, observer: &mut observer };
-        with_source(&mut runner, &mut job, &enlargement, |runner, job| {
+        with_source(&mut runner, &mut job, &Reduced::Repeated(enlargement), |runner, job| {
             assert_eq!((runner.params.min, job.curved), (100, true));
             assert!((runner.params.lateral_noise - 0.6 / 6.0f64.sqrt()).abs() < 1e-12);
             let source = job.sensor.intrinsics.unwrap();
@@ -343,7 +476,7 @@ mod tests {
         for (min, expected) in [(30, TILE), (10, 10), (0, 0)] {
             let mut runner = Runner { params: Planar { min, ..params }, ..Runner::default() };
             let mut job = Job { sensor, threads: 1, curved: false, joiner: None, observer: &mut |_| () };
-            with_source(&mut runner, &mut job, &enlargement, |runner, _| {
+            with_source(&mut runner, &mut job, &Reduced::Repeated(enlargement), |runner, _| {
                 assert_eq!(runner.params.min, expected);
                 Ok(())
             })

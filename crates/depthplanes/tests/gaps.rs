@@ -1,0 +1,179 @@
+//! Maps that were measured at some of their pixels, in patterns, and `planar`.
+
+use depthplanes::{DepthView, Detection, Detector, Intrinsics, Planar, Sensor};
+
+const SIZE: [usize; 2] = [320, 240];
+const FOCAL: f64 = 288.0;
+/// Normal and distance, metres, of the wall, the floor and the side.
+const PLANES: [([f64; 3], f64); 3] = [([0.0, 0.199, -0.98], 4.0), ([0.0, -0.98, -0.199], 1.2), ([1.0, 0.0, 0.0], 1.5)];
+
+/// Which of [`PLANES`] a pixel sees, and at what depth, metres.
+fn seen(u: usize, v: usize) -> (usize, f64) {
+    let ray = [(u as f64 - 159.5) / FOCAL, (v as f64 - 119.5) / FOCAL, 1.0];
+    let inverse = PLANES.map(|(normal, distance)| -(0..3).map(|i| normal[i] * ray[i]).sum::<f64>() / distance);
+    let nearest = (0..3).max_by(|&a, &b| inverse[a].total_cmp(&inverse[b])).unwrap();
+    (nearest, 1.0 / inverse[nearest])
+}
+
+/// A number from 0 to 1 for each place and use.
+fn chance(u: usize, v: usize, of: usize) -> f64 {
+    let mut bits = (u as u64) << 40 ^ (v as u64) << 20 ^ of as u64 ^ 0x9e37_79b9;
+    for _ in 0..3 {
+        bits = (bits ^ bits >> 31).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    }
+    (bits >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// The room in millimetres with the noise of a Kinect, 0 where a pattern has no pixel.
+fn room(holds: impl Fn(usize, usize) -> bool) -> Vec<u16> {
+    let noisy = |u: usize, v: usize| {
+        let depth = seen(u, v).1;
+        let normal = (0..12).map(|of| chance(u, v, of)).sum::<f64>() - 6.0;
+        (1e3 * (depth + 0.0014 * depth * depth * normal)).round() as u16
+    };
+    (0..SIZE[0] * SIZE[1])
+        .map(|at| [at % SIZE[0], at / SIZE[0]])
+        .map(|[u, v]| if holds(u, v) { noisy(u, v) } else { 0 })
+        .collect()
+}
+
+fn detect(detector: &mut Detector, pixels: &[u16]) -> Detection {
+    detector.detect(DepthView::new(pixels, SIZE[0], SIZE[1]).unwrap()).unwrap().clone()
+}
+
+fn detector() -> Detector {
+    Detector::new(Planar::default()).unwrap().sensor(sensor())
+}
+
+fn sensor() -> Sensor {
+    Sensor::default().intrinsics(Intrinsics::new(FOCAL, FOCAL, 159.5, 119.5).ok())
+}
+
+/// Fails unless the planes are those of the room, no other, on nearly all measured pixels.
+fn check(what: &str, found: &Detection, share: f64) {
+    assert_eq!(found.planes.len(), 3, "{what}");
+    let mut on = 0;
+    for plane in &found.planes {
+        let metric = plane.metric.as_ref().unwrap();
+        let own = |(normal, distance): &([f64; 3], f64)| {
+            let same = (0..3).all(|i| (normal[i] - metric.plane.normal[i]).abs() < 0.03);
+            same && (metric.plane.distance / distance - 1.0).abs() < 0.02
+        };
+        let which = PLANES.iter().position(own);
+        assert!(which.is_some(), "{what}: {:?}", metric.plane);
+        let right = |at: usize| found.labels[at] == plane.label && Some(seen(at % SIZE[0], at / SIZE[0]).0) == which;
+        on += (0..found.labels.len()).filter(|&at| right(at)).count();
+    }
+    assert!(on as f64 >= share * found.valid_pixels as f64, "{what}: {on} of {}", found.valid_pixels);
+}
+
+#[test]
+fn rows_and_columns_that_are_missing_leave_the_planes_of_the_room() {
+    for (some, of) in [(1, 2), (1, 3), (1, 4), (1, 6), (1, 8), (2, 3), (2, 4), (2, 8), (3, 4), (4, 8), (8, 16)] {
+        for first in [0, 1] {
+            check(
+                &format!("{some} of {of} rows"),
+                &detect(&mut detector(), &room(|_, v| (v + first) % of < some)),
+                0.95,
+            );
+            check(
+                &format!("{some} of {of} columns"),
+                &detect(&mut detector(), &room(|u, _| (u + first) % of < some)),
+                0.95,
+            );
+        }
+    }
+}
+
+#[test]
+fn lattices_and_chequers_leave_the_planes_of_the_room() {
+    for step in [2, 3, 4, 5] {
+        let pixels = room(|u, v| u % step == step / 2 && v % step == step / 2);
+        check(&format!("every {step}. pixel"), &detect(&mut detector(), &pixels), 0.95);
+        let pixels = room(|u, v| (u + v) % step == 0);
+        check(&format!("diagonals of {step}"), &detect(&mut detector(), &pixels), 0.95);
+    }
+    for side in [1, 2, 3, 4, 5, 8] {
+        let pixels = room(|u, v| (u / side + v / side) % 2 == 0);
+        check(&format!("squares of {side}"), &detect(&mut detector(), &pixels), 0.95);
+    }
+}
+
+#[test]
+fn pixels_at_random_leave_the_planes_of_the_room() {
+    for percent in [75, 65, 50, 35, 25, 20, 15, 10] {
+        for of in [20, 21, 22] {
+            let pixels = room(|u, v| chance(u, v, of) < f64::from(percent) / 100.0);
+            check(&format!("{percent} % at random"), &detect(&mut detector(), &pixels), 0.93);
+        }
+    }
+}
+
+#[test]
+fn grids_of_lines_that_are_missing_leave_the_planes_of_the_room() {
+    for (line, of) in [(1, 8), (1, 16), (2, 12), (2, 16), (3, 16), (3, 32), (4, 16), (5, 24)] {
+        let pixels = room(|u, v| (u + 3) % of >= line && (v + 5) % of >= line);
+        check(&format!("lines of {line} each {of}"), &detect(&mut detector(), &pixels), 0.95);
+    }
+}
+
+#[test]
+fn a_sparse_map_gives_the_same_on_any_number_of_threads_and_to_a_detector_that_saw_others() {
+    let sparse = room(|u, v| u % 3 == 1 && chance(u, v, 9) < 0.7);
+    let expected = detect(&mut detector(), &sparse);
+    for threads in [2, 3] {
+        let mut detector = detector().threads(threads);
+        detect(&mut detector, &room(|_, _| true));
+        detect(&mut detector, &room(|_, v| v % 4 == 0));
+        let found = detect(&mut detector, &sparse);
+        assert_eq!((&found.labels, &found.planes), (&expected.labels, &expected.planes));
+    }
+}
+
+#[test]
+fn a_pixel_of_a_sparse_map_is_explained_by_its_bin_and_a_missing_one_as_missing() {
+    let pixels = room(|u, v| u % 2 == 0 && v % 3 == 1);
+    let view = DepthView::new(&pixels, SIZE[0], SIZE[1]).unwrap();
+    let mut detector = detector();
+    let found = detect(&mut detector, &pixels);
+    for at in [[40, 100], [200, 40], [200, 220]] {
+        let why = detector.explain(view, at).unwrap();
+        let label = found.labels[at[1] * SIZE[0] + at[0]];
+        match why.verdict {
+            depthplanes::explanation::Verdict::Plane { label: said, pixels, .. } => {
+                assert_eq!((said, pixels), (label, found.planes[usize::from(label) - 1].pixel_count), "{at:?}");
+            }
+            other => panic!("{at:?}: {other:?}"),
+        }
+        assert!(why.findings[0].outcome.contains("few of its pixels"), "{:?}", why.findings[0]);
+    }
+    assert_eq!(detector.explain(view, [41, 100]).unwrap().verdict.kind(), "not_measured");
+}
+
+#[test]
+fn bends_of_a_sparse_map_are_curved_and_no_pixel_is_both() {
+    // A column 0.5 m thick before a wall.
+    let depth = |u: usize, v: usize| {
+        let x = (u as f64 - 159.5) / FOCAL;
+        let (a, b, c) = (x * x + 1.0, -2.0 * 1.5, 1.5 * 1.5 - 0.25);
+        let root = b * b - 4.0 * a * c;
+        if root > 0.0 { (-b - root.sqrt()) / (2.0 * a) } else { 2.0 + 0.002 * v as f64 }
+    };
+    let is_measured = |u: usize, v: usize| u % 2 == 1 && v % 2 == 0;
+    let pixels: Vec<u16> = (0..SIZE[0] * SIZE[1])
+        .map(|at| [at % SIZE[0], at / SIZE[0]])
+        .map(
+            |[u, v]| {
+                if is_measured(u, v) { (1e3 * depth(u, v) + 6.0 * chance(u, v, 1) - 3.0).round() as u16 } else { 0 }
+            },
+        )
+        .collect();
+    let found = detect(&mut detector().curved(true), &pixels);
+    let curved = found.curved.as_ref().unwrap();
+    assert!(!curved.regions.is_empty());
+    for (at, (&plane, &bend)) in found.labels.iter().zip(&curved.labels).enumerate() {
+        let [u, v] = [at % SIZE[0], at / SIZE[0]];
+        assert!(plane == 0 || bend == 0);
+        assert!(is_measured(u, v) || plane + bend == 0, "what was not measured has a label");
+    }
+}
