@@ -4,7 +4,7 @@ mod support;
 
 use depthplanes::detection::Curved;
 use depthplanes::outline::{Outliner, Outlines};
-use depthplanes::{Coplanar, Detection, Detector, Measure, Ngaf, Part, Sensor};
+use depthplanes::{Coplanar, Detection, Detector, Ngaf, Part, Sensor, ValueKind};
 use depthplanes_io::outputs::{self, OUTPUTS, Output, OutputError, Report, Spread, Times};
 use depthplanes_io::{Frame, Pixels};
 use std::path::{Path, PathBuf};
@@ -94,7 +94,7 @@ fn near_is_brighter_than_far_and_missing_is_darkest() {
 fn overlays_of_disparity_and_of_empty_and_of_flat_maps_are_drawn() {
     let mut frame = frame();
     let detection = detection();
-    frame.sensor = Sensor::default().measure(Measure::Disparity);
+    frame.sensor = Sensor::default().value_kind(ValueKind::Disparity);
     encode("overlay", "a.png", &Report { legend: true, ..report(&frame, &detection) });
     for value in [0, 700] {
         frame.pixels = depthplanes_io::Pixels::U16(vec![value; WIDTH * HEIGHT]);
@@ -279,7 +279,7 @@ fn cloud_without_a_camera_says_what_is_missing() {
     frame.sensor.intrinsics = None;
     let error = (output("cloud").writers[0].encode)(&report(&frame, &detection)).unwrap_err();
     assert!(error.to_string().contains("--intrinsics"), "{error}");
-    frame.sensor.measure = Measure::Disparity;
+    frame.sensor.value_kind = ValueKind::Disparity;
     let error = (output("cloud").writers[0].encode)(&report(&frame, &detection)).unwrap_err();
     assert!(error.to_string().contains("--baseline"), "{error}");
     assert!(error.is_usage());

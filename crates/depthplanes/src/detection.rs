@@ -121,8 +121,8 @@ pub struct Plane {
     /// The least-squares plane in the map's own units; `None` if the pixels lie in one row or one
     /// column, where no plane is determined. Its numbers are finite.
     pub fit: Option<MapFit>,
-    /// The plane in camera coordinates; `None` without intrinsics and a metric measure, without a fit, if a pixel lies at
-    /// or behind infinity, or if one of its numbers would not be finite.
+    /// The plane in camera coordinates; `None` without intrinsics and a metric value kind, without a fit, if a pixel lies
+    /// at or behind infinity, or if one of its numbers would not be finite.
     pub metric: Option<MetricPlane>,
 }
 

@@ -9,7 +9,7 @@ use depthplanes::noise::{EnlargementFinder, RoundingFinder, Space};
 use depthplanes::outline::Outliner;
 use depthplanes::scene::{ScenePixels, Spec};
 use depthplanes::{
-    Coplanar, DepthView, Detector, Distortion, DistortionModel, Intrinsics, Measure, Ngaf, Pixel, Planar, Sensor,
+    Coplanar, DepthView, Detector, Distortion, DistortionModel, Intrinsics, Ngaf, Pixel, Planar, Sensor, ValueKind,
 };
 use naive::Random;
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -86,11 +86,11 @@ fn everything() -> Ngaf {
 
 fn sensors() -> [Sensor; 3] {
     let intrinsics = Intrinsics::new(300.0, 300.0, 80.0, 60.0).ok();
-    let stereo = Measure::stereo(1.0, 300.0, 0.1, 0.0).unwrap();
+    let stereo = ValueKind::stereo(1.0, 300.0, 0.1, 0.0).unwrap();
     [
         Sensor::default(),
         Sensor::default().intrinsics(intrinsics),
-        Sensor::default().measure(stereo).intrinsics(intrinsics),
+        Sensor::default().value_kind(stereo).intrinsics(intrinsics),
     ]
 }
 

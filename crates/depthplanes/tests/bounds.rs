@@ -3,7 +3,7 @@
 use depthplanes::methods::{METHODS, find};
 use depthplanes::noise::{NoiseTable, SensorNoise};
 use depthplanes::scene::Random;
-use depthplanes::{DepthView, Detector, Error, Intrinsics, Measure, Sensor};
+use depthplanes::{DepthView, Detector, Error, Intrinsics, Sensor, ValueKind};
 use std::time::{Duration, Instant};
 
 /// A slanted wall with a box in front of it, noisy, millimetres.
@@ -35,7 +35,7 @@ fn searches_with_tolerances_of_nothing_end() {
     for (name, parameters) in cases {
         for metres in [0.001, 1e-12, 1e12] {
             let started = Instant::now();
-            let sensor = Sensor::default().measure(Measure::depth(metres).unwrap());
+            let sensor = Sensor::default().value_kind(ValueKind::depth(metres).unwrap());
             let sensor = sensor.intrinsics(Intrinsics::new(60.0, 60.0, 35.0, 32.0).unwrap());
             let mut detector = Detector::new(find(name).unwrap().with(parameters).unwrap()).unwrap().sensor(sensor);
             detector.detect(view).unwrap();
@@ -64,17 +64,17 @@ fn numbers_that_cannot_be_given_are_left_out() {
     for surface in surfaces {
         let map: Vec<f32> = (0..24 * 16).map(|at| surface((at % 24) as f32, (at / 24) as f32)).collect();
         let view = DepthView::new(&map, size[0], size[1]).unwrap();
-        for measure in [
-            Measure::Depth { metres: 1e-12 },
-            Measure::Depth { metres: 1e12 },
-            Measure::InverseDepth { slope: 1e-15, offset: 1e15 },
-            Measure::InverseDepth { slope: 1e15, offset: 0.0 },
+        for value_kind in [
+            ValueKind::Depth { metres: 1e-12 },
+            ValueKind::Depth { metres: 1e12 },
+            ValueKind::InverseDepth { slope: 1e-15, offset: 1e15 },
+            ValueKind::InverseDepth { slope: 1e15, offset: 0.0 },
         ] {
             for [focal, middle] in [[1e-3, 1e9], [1e9, -1e9], [20.0, 8.0]] {
                 for noise in [None, Some(1e12), Some(1e-12)] {
                     let noise = noise.map(|base| SensorNoise::Depth { base, growth: base });
                     let camera = Intrinsics::new(focal, -focal, middle, middle).unwrap();
-                    let sensor = Sensor::default().measure(measure).intrinsics(camera).noise(noise);
+                    let sensor = Sensor::default().value_kind(value_kind).intrinsics(camera).noise(noise);
                     for method in METHODS {
                         let method = method.with(&[("min", 8.0)]).unwrap();
                         let mut detector = Detector::new(method).unwrap().sensor(sensor);

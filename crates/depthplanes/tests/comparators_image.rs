@@ -3,7 +3,7 @@
 use depthplanes::methods::find;
 use depthplanes::noise::SensorNoise;
 use depthplanes::scene::{Random, SceneFrame, Spec};
-use depthplanes::{AnyView, DepthView, Detection, Detector, Measure, Sensor};
+use depthplanes::{AnyView, DepthView, Detection, Detector, Sensor, ValueKind};
 
 const METHODS: [&str; 3] = ["ppdfdm", "fpdidm", "gradient"];
 const A_CONTRARIO: [&str; 2] = ["ppdfdm", "fpdidm"];
@@ -19,7 +19,7 @@ fn run<'m>(method: &str, given: &[(&str, f64)], sensor: Sensor, view: impl Into<
 
 fn disparity(sigma: Option<f64>) -> Sensor {
     let noise = sigma.map(|sigma| SensorNoise::Value { sigma });
-    Sensor::default().measure(Measure::Disparity).noise(noise)
+    Sensor::default().value_kind(ValueKind::Disparity).noise(noise)
 }
 
 /// A map of that size, given by column and row.

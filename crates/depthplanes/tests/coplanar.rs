@@ -3,7 +3,7 @@
 use depthplanes::detection::MetricPlane;
 use depthplanes::noise::SensorNoise;
 use depthplanes::scene::{Camera, Place, Pose, Scene, SceneFrame, SensorModel, Spec, render};
-use depthplanes::{Coplanar, Detection, Detector, Error, Measure, Ngaf, Planar, Sensor};
+use depthplanes::{Coplanar, Detection, Detector, Error, Ngaf, Planar, Sensor, ValueKind};
 
 fn made(scene: &Scene, sensor: SensorModel) -> SceneFrame {
     let camera = Camera::kinect(320, 240, Pose::at_height(1.4, 12.0)).unwrap();
@@ -220,7 +220,7 @@ fn planes_smaller_than_an_area_leave_no_label() {
 fn what_is_in_metres_needs_a_camera() {
     let map = [1000u16; 64];
     let view = depthplanes::DepthView::new(&map, 8, 8).unwrap();
-    let rigless = Sensor::default().measure(Measure::Disparity);
+    let rigless = Sensor::default().value_kind(ValueKind::Disparity);
     for (sensor, is_disparity) in [(Sensor::default(), false), (rigless, true)] {
         let mut join =
             Detector::new(Ngaf::default()).unwrap().sensor(sensor).merge_coplanar(Coplanar::default()).unwrap();

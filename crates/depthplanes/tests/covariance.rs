@@ -5,7 +5,7 @@ use depthplanes::internals::{Moments, hessian, metric_covariance};
 use depthplanes::noise::{NoiseTable, SensorNoise};
 use depthplanes::scene::{Random, SceneFrame, SensorModel, Spec};
 use depthplanes::{
-    CovarianceSource, DepthView, Detection, Detector, Hessian, Intrinsics, Measure, Ngaf, Planar, Plane, Sensor,
+    CovarianceSource, DepthView, Detection, Detector, Hessian, Intrinsics, Ngaf, Planar, Plane, Sensor, ValueKind,
 };
 use nalgebra::{SMatrix, Vector3, Vector4};
 
@@ -50,7 +50,7 @@ fn plane(random: &mut Random) -> [f64; 3] {
 /// What a map is made of, and what the detector is told.
 struct Case {
     name: &'static str,
-    measure: Measure,
+    value_kind: ValueKind,
     noise: SensorNoise,
     /// Whether the map has whole values, not single precision.
     is_whole: bool,
@@ -60,7 +60,7 @@ impl Case {
     /// The value of a pixel at an exact depth.
     fn value(&self, depth_m: f64, random: &mut Random) -> f64 {
         let draw = random.gaussian();
-        let value = |depth_m: f64| self.measure.value(depth_m).unwrap_or(0.0);
+        let value = |depth_m: f64| self.value_kind.value(depth_m).unwrap_or(0.0);
         match self.noise {
             SensorNoise::Value { sigma } => value(depth_m) + sigma * draw,
             noise => value(depth_m + noise.depth_sigma_m(depth_m).unwrap() * draw),
@@ -69,7 +69,7 @@ impl Case {
 
     /// What is found in a map of noisy values.
     fn detect(&self, values: &[f64], width: usize, height: usize, intrinsics: Intrinsics) -> Detection {
-        let sensor = Sensor::default().measure(self.measure).intrinsics(Some(intrinsics)).noise(Some(self.noise));
+        let sensor = Sensor::default().value_kind(self.value_kind).intrinsics(Some(intrinsics)).noise(Some(self.noise));
         let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
         if self.is_whole {
             let whole: Vec<u16> = values.iter().map(|value| value.round() as u16).collect();
@@ -81,19 +81,19 @@ impl Case {
     }
 }
 
-const MILLIMETRES: Measure = Measure::Depth { metres: 0.001 };
+const MILLIMETRES: ValueKind = ValueKind::Depth { metres: 0.001 };
 
 fn cases() -> [Case; 7] {
     let table = NoiseTable::new(&[[0.5, 0.001], [1.5, 0.002], [2.5, 0.009], [8.0, 0.06]]).unwrap();
     // A Kinect's: eighths of a pixel at 580 px and 7.5 cm, with half a step of noise.
-    let rig = Measure::stereo(0.125, 580.0, 0.075, 0.0).unwrap();
+    let rig = ValueKind::stereo(0.125, 580.0, 0.075, 0.0).unwrap();
     let pixels = SensorNoise::Value { sigma: 0.5 };
     let depth = |base, growth| SensorNoise::Depth { base, growth };
-    let case = |name, measure, noise, is_whole| Case { name, measure, noise, is_whole };
+    let case = |name, value_kind, noise, is_whole| Case { name, value_kind, noise, is_whole };
     [
         case("constant in disparity", rig, pixels, false),
         case("constant in disparity, eighths of a pixel", rig, pixels, true),
-        case("z^2", Measure::Depth { metres: 1.0 }, depth(0.0, 1.4e-3), false),
+        case("z^2", ValueKind::Depth { metres: 1.0 }, depth(0.0, 1.4e-3), false),
         case("a + b z^2, millimetres", MILLIMETRES, depth(0.003, 0.001), true),
         case("time of flight, millimetres", MILLIMETRES, depth(0.001, 0.0013), true),
         case("constant in depth, millimetres", MILLIMETRES, depth(0.005, 0.0), true),
@@ -205,7 +205,7 @@ fn residuals_speak_where_the_noise_is_not_known_or_too_small() {
         // A seventh of the truth.
         let little = SensorNoise::Depth { base: 0.00015, growth: 0.00019 };
         for (noise, errors) in [None, Some(little)].into_iter().zip(&mut errors) {
-            let sensor = Sensor::default().measure(case.measure).intrinsics(Some(camera())).noise(noise);
+            let sensor = Sensor::default().value_kind(case.value_kind).intrinsics(Some(camera())).noise(noise);
             let mut detector = Detector::new(Ngaf::default().theta(1e6)).unwrap().sensor(sensor);
             let found = detector.detect(DepthView::new(&values, WIDTH, HEIGHT).unwrap()).unwrap();
             let from = if noise.is_some() { CovarianceSource::Noise } else { CovarianceSource::Residuals };
@@ -250,11 +250,11 @@ fn the_normal_of_a_small_patch_may_be_off_by_degrees() {
     }
 }
 
-/// What a camera's model states of its error, white and smooth, for maps with that measure.
-fn stated(model: SensorModel, measure: Measure) -> [SensorNoise; 2] {
+/// What a camera's model states of its error, white and smooth, for maps of that value kind.
+fn stated(model: SensorModel, value_kind: ValueKind) -> [SensorNoise; 2] {
     let error = model.error_at(2.0);
-    [error.white, error.smooth].map(|sigma| match measure {
-        Measure::InverseDepth { slope, .. } => SensorNoise::Value { sigma: sigma / slope },
+    [error.white, error.smooth].map(|sigma| match value_kind {
+        ValueKind::InverseDepth { slope, .. } => SensorNoise::Value { sigma: sigma / slope },
         _ => SensorNoise::Depth { base: 0.0, growth: sigma },
     })
 }
@@ -266,7 +266,7 @@ fn errors_in_rooms(sensor: &str, is_stated: bool) -> Vec<f64> {
     for seed in 1..=20 {
         let mut frame = format!("random:sensor={sensor},seed={seed}").parse::<Spec>().unwrap().frame().unwrap();
         if is_stated {
-            let [noise, smooth] = stated(SensorModel::find(sensor).unwrap(), frame.sensor.measure);
+            let [noise, smooth] = stated(SensorModel::find(sensor).unwrap(), frame.sensor.value_kind);
             (frame.sensor.noise, frame.sensor.smooth_noise) = (Some(noise), Some(smooth));
         }
         let mut detector = Detector::new(Planar::default()).unwrap().sensor(frame.sensor);

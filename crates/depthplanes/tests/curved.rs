@@ -4,7 +4,7 @@ use depthplanes::explanation::Explanation;
 use depthplanes::methods::METHODS;
 use depthplanes::noise::SensorNoise;
 use depthplanes::scene::{Camera, Place, Pose, Random, Scene, SceneFrame, SensorModel, Spec, render};
-use depthplanes::{DepthView, Detector, Error, Measure, Planar, Sensor};
+use depthplanes::{DepthView, Detector, Error, Planar, Sensor, ValueKind};
 
 fn scene(spec: &str) -> SceneFrame {
     spec.parse::<Spec>().unwrap().frame().unwrap()
@@ -40,7 +40,7 @@ impl Alarms {
     fn add(&mut self, map: &[f32], middles: &[[usize; 2]]) {
         let view = DepthView::new(map, WIDTH, HEIGHT).unwrap();
         let noise = Some(SensorNoise::Value { sigma: SIGMA });
-        let sensor = Sensor::default().measure(Measure::Disparity).noise(noise);
+        let sensor = Sensor::default().value_kind(ValueKind::Disparity).noise(noise);
         let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor).curved(true);
         let found = detector.detect(view).unwrap().clone();
         let labels = found.curved.as_ref().unwrap();

@@ -1,7 +1,7 @@
 //! Planes behind lenses that distort: labels of the map's own pixels, metres as a pinhole camera would give them.
 
 use depthplanes::{
-    Coplanar, DepthView, Detector, Distortion, DistortionModel, Hessian, Intrinsics, Measure, Planar, Sensor,
+    Coplanar, DepthView, Detector, Distortion, DistortionModel, Hessian, Intrinsics, Planar, Sensor, ValueKind,
 };
 use depthplanes::{describe_labels, outline::Outliner};
 
@@ -208,7 +208,7 @@ fn disparities_and_floats_behind_a_lens_have_the_same_planes() {
     let (depth, _) = seen(&sensor);
     let far = |z: f64| z > 60.0;
     let metres: Vec<f32> = depth.iter().map(|&z| if far(z) { f32::NAN } else { z as f32 }).collect();
-    let of_metres = sensor.measure(Measure::depth(1.0).unwrap());
+    let of_metres = sensor.value_kind(ValueKind::depth(1.0).unwrap());
     let found = Detector::default()
         .sensor(of_metres)
         .detect(DepthView::new(&metres, WIDTH, HEIGHT).unwrap())
@@ -217,7 +217,7 @@ fn disparities_and_floats_behind_a_lens_have_the_same_planes() {
         .len();
     assert_eq!(found, 3);
     let disparities: Vec<u16> = depth.iter().map(|&z| if far(z) { 0 } else { (25_600.0 / z).round() as u16 }).collect();
-    let of_disparity = sensor.measure(Measure::InverseDepth { slope: 1.0 / 25_600.0, offset: 0.0 });
+    let of_disparity = sensor.value_kind(ValueKind::InverseDepth { slope: 1.0 / 25_600.0, offset: 0.0 });
     let mut detector = Detector::default().sensor(of_disparity);
     let found = detector.detect(DepthView::new(&disparities, WIDTH, HEIGHT).unwrap()).unwrap();
     assert_eq!(found.planes.len(), 3);

@@ -3,7 +3,7 @@
 mod naive;
 
 use depthplanes::methods::{Configured, METHODS, MethodInfo, Param, ParamKind, find};
-use depthplanes::{AnyView, DepthView, Detection, Detector, Error, Intrinsics, Measure, Sensor};
+use depthplanes::{AnyView, DepthView, Detection, Detector, Error, Intrinsics, Sensor, ValueKind};
 use naive::Random;
 use std::collections::HashSet;
 use std::panic::catch_unwind;
@@ -132,8 +132,8 @@ fn sensors() -> [Sensor; 3] {
     let intrinsics = Intrinsics::new(500.0, 500.0, 20.0, 15.0).ok();
     [
         Sensor::default(),
-        Sensor::default().measure(Measure::Depth { metres: 0.001 }).intrinsics(intrinsics),
-        Sensor::default().measure(Measure::stereo(1.0, 500.0, 0.1, 0.0).unwrap()).intrinsics(intrinsics),
+        Sensor::default().value_kind(ValueKind::Depth { metres: 0.001 }).intrinsics(intrinsics),
+        Sensor::default().value_kind(ValueKind::stereo(1.0, 500.0, 0.1, 0.0).unwrap()).intrinsics(intrinsics),
     ]
 }
 

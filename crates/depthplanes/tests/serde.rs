@@ -3,7 +3,7 @@
 
 use depthplanes::noise::{NoiseTable, SensorNoise};
 use depthplanes::scene::Spec;
-use depthplanes::{Coplanar, Detection, Detector, Intrinsics, Measure, Ngaf, Planar, Sensor};
+use depthplanes::{Coplanar, Detection, Detector, Intrinsics, Ngaf, Planar, Sensor, ValueKind};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -26,7 +26,7 @@ fn a_detection_is_read_back_as_it_was() {
 fn sensors_and_parameters_are_read_back_as_they_were() {
     let table = NoiseTable::new(&[[0.5, 0.001], [2.0, 0.004]]).unwrap();
     let camera = Intrinsics::new(525.0, 520.0, 319.5, 239.5).unwrap();
-    let sensor = Sensor::default().measure(Measure::stereo(1.0, 500.0, 0.1, 0.0).unwrap()).intrinsics(camera);
+    let sensor = Sensor::default().value_kind(ValueKind::stereo(1.0, 500.0, 0.1, 0.0).unwrap()).intrinsics(camera);
     same(&sensor.noise(SensorNoise::Table(table)));
     same(&Planar::default().min(7).inlier_threshold(2.5));
     same(&Ngaf::default().window(5));

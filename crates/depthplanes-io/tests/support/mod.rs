@@ -1,7 +1,7 @@
 //! A small frame with three planes written by hand, and golden files.
 
 use depthplanes::detection::{Detection, MapFit, MetricPlane, PixelBox, Plane};
-use depthplanes::{Hessian, Intrinsics, Measure, Sensor};
+use depthplanes::{Hessian, Intrinsics, Sensor, ValueKind};
 use depthplanes_io::outputs::Report;
 use depthplanes_io::{Frame, Pixels, Provenance};
 use std::path::PathBuf;
@@ -23,7 +23,7 @@ pub fn frame() -> Frame {
         pixels: Pixels::U16((0..WIDTH * HEIGHT).map(value).collect()),
         missing: None,
         valid_range: None,
-        sensor: Sensor::default().measure(Measure::Depth { metres: 0.001 }).intrinsics(Some(Intrinsics {
+        sensor: Sensor::default().value_kind(ValueKind::Depth { metres: 0.001 }).intrinsics(Some(Intrinsics {
             fx: 40.0,
             fy: 40.0,
             cx: 23.5,

@@ -117,7 +117,7 @@ impl<B: Baseline> Method for Runner<B> {
     }
 
     fn run(&mut self, view: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        let (sensor, space) = (job.sensor, Space::of(job.sensor.measure));
+        let (sensor, space) = (job.sensor, Space::of(job.sensor.value_kind));
         let input = Input { view, affine: with_view!(view, map => Affine::of(&map, space)), sensor };
         let Segmented { image, noise } = self.baseline.segment(&input, job);
         let image = DepthView::new(&image, view.width(), view.height())?;

@@ -267,7 +267,7 @@ fn outward(plane: Plane3) -> Plane3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::{Intrinsics, Measure};
+    use crate::camera::{Intrinsics, ValueKind};
     use crate::map::DepthView;
     use crate::methods::find;
     use crate::sensor::Sensor;
@@ -313,7 +313,7 @@ mod tests {
         let mut random = Random::new(3);
         let wall: Vec<f32> = (0..160 * 120).map(|_| (2.0 + 0.004 * random.gaussian()) as f32).collect();
         let sensor = Sensor {
-            measure: Measure::Depth { metres: 1.0 },
+            value_kind: ValueKind::Depth { metres: 1.0 },
             intrinsics: Intrinsics::new(150.0, 150.0, 80.0, 60.0).ok(),
             ..Sensor::default()
         };

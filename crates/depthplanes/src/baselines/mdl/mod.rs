@@ -76,17 +76,17 @@ impl Baseline for Mdl {
 impl Mdl {
     /// The noise stated, the sensor's, or that of the map.
     fn noise(&self, map: &Input<'_>) -> NoiseModel {
-        let measure = map.sensor.measure;
+        let value_kind = map.sensor.value_kind;
         let step = with_view!(map.view, map => Steps::default().of(&map));
-        let model = |noise| NoiseModel::new(measure, noise, step);
+        let model = |noise| NoiseModel::new(value_kind, noise, step);
         let estimated = || {
             let mut estimator = Estimator::default();
-            estimator.add(map.view, measure).ok()?;
+            estimator.add(map.view, value_kind).ok()?;
             model(estimator.estimate().ok()?.noise)
         };
-        let stated = stated(Space::of(measure), self.noise, self.growth);
+        let stated = stated(Space::of(value_kind), self.noise, self.growth);
         let noise = stated.or(map.sensor.noise).and_then(model).or_else(estimated);
         // Too few blocks tell nothing: then the steps are all there is.
-        noise.or_else(|| model(of_kind(Space::of(measure), 0.0, 0.0))).expect("noise of the map's own kind")
+        noise.or_else(|| model(of_kind(Space::of(value_kind), 0.0, 0.0))).expect("noise of the map's own kind")
     }
 }

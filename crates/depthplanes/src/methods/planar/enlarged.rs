@@ -270,7 +270,7 @@ fn widen(covariance: &mut [[f64; 4]; 4], times: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::Measure;
+    use crate::camera::ValueKind;
     use crate::components::Connectivity;
     use crate::util::random::Random;
 
@@ -315,7 +315,7 @@ mod tests {
     #[test]
     fn the_stages_see_the_camera_of_the_source_and_parameters_for_its_pixels_and_neither_stays() {
         let camera = Intrinsics { fx: 500.0, fy: 480.0, cx: 319.5, cy: 200.0 };
-        let sensor = Sensor { measure: Measure::Disparity, intrinsics: Some(camera), ..Sensor::default() };
+        let sensor = Sensor { value_kind: ValueKind::Disparity, intrinsics: Some(camera), ..Sensor::default() };
         let enlargement = Enlargement { columns: &[0], rows: &[0], factor: [2.0, 3.0] };
         let params = Planar { min: 600, lateral_noise: 0.6, ..Planar::default() };
         let mut runner = Runner { params, ..Runner::default() };

@@ -141,7 +141,7 @@ fn noises(trace: &Trace, run: &Runner, least: f64) -> Vec<Change> {
     let here = noise.variance(trace.q).sqrt() / run.params.noise_scale;
     let most = FACTORS[FACTORS.len() - 1];
     let factors = FACTORS.into_iter().map(|factor| 1.01 * factor * least).filter(|&factor| factor <= most);
-    let scaled = |factor: f64| match Space::of(trace.sensor.measure) {
+    let scaled = |factor: f64| match Space::of(trace.sensor.value_kind) {
         Space::Value => vec![("noise", rounded_up(factor * here))],
         Space::InverseDepth { .. } => {
             let (z, sigma_m) = (trace.q.recip(), here / (trace.q * trace.q));
@@ -166,7 +166,7 @@ mod tests {
     use super::super::testing::{Made, SENSOR, SIGMA, Stages, noise};
     use super::super::trace::Against;
     use super::*;
-    use crate::camera::Measure;
+    use crate::camera::ValueKind;
     use crate::noise::SensorNoise;
     use crate::sensor::Sensor;
 
@@ -255,9 +255,9 @@ mod tests {
         }
         assert_eq!(noises(&Trace { noise: None, ..trace() }, &stages.run, 1.0), [] as [Change; 0]);
         // Depth: at 2 m the base and the growth together are so many times what they were.
-        let measure = Measure::Depth { metres: 0.001 };
-        let model = NoiseModel::new(measure, SensorNoise::Depth { base: 0.002, growth: 0.0015 }, 0.0).unwrap();
-        let seen = Trace { q: 0.5, noise: Some(model), sensor: Sensor { measure, ..SENSOR }, ..trace() };
+        let value_kind = ValueKind::Depth { metres: 0.001 };
+        let model = NoiseModel::new(value_kind, SensorNoise::Depth { base: 0.002, growth: 0.0015 }, 0.0).unwrap();
+        let seen = Trace { q: 0.5, noise: Some(model), sensor: Sensor { value_kind, ..SENSOR }, ..trace() };
         let changes = noises(&seen, &stages.run, 2.0);
         let [base, growth] = ["noise", "noise-growth"].map(|name| value(&changes, name)[0]);
         let (before, after) = (0.002 + 0.0015 * 4.0, base + growth * 4.0);

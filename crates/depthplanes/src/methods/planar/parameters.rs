@@ -113,10 +113,10 @@ impl Planar {
     /// The noise to expect: each part as the parameters state it, or else as the sensor's, or else as a map shows it whose
     /// values are rounded so.
     pub(super) fn expected(&self, sensor: &Sensor, shown: &Errors, rounding: Rounding) -> NoiseModel {
-        let (space, scale) = (Space::of(sensor.measure), self.noise_scale);
+        let (space, scale) = (Space::of(sensor.value_kind), self.noise_scale);
         // What is stated for another kind of map counts as not stated.
         let model = |noise: SensorNoise| {
-            Some(NoiseModel::new(sensor.measure, noise.times(scale), 0.0)?.with_rounding(rounding))
+            Some(NoiseModel::new(sensor.value_kind, noise.times(scale), 0.0)?.with_rounding(rounding))
         };
         let estimated = |factor: f64| shown.times(factor, space);
         let white =
@@ -138,8 +138,8 @@ impl Planar {
 
     /// The smooth part as the parameters state it, or else as the sensor's, if it is of the map's kind.
     pub(super) fn stated_smooth(&self, sensor: &Sensor) -> Option<SensorNoise> {
-        let stated = stated(Space::of(sensor.measure), self.smooth_noise, self.smooth_noise_growth);
-        stated.or(sensor.smooth_noise).filter(|&noise| NoiseModel::new(sensor.measure, noise, 0.0).is_some())
+        let stated = stated(Space::of(sensor.value_kind), self.smooth_noise, self.smooth_noise_growth);
+        stated.or(sensor.smooth_noise).filter(|&noise| NoiseModel::new(sensor.value_kind, noise, 0.0).is_some())
     }
 
     /// Fewest pixels of a region of tiles: a plane has many of its pixels in tiles that it shares with others.
