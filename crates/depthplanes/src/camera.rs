@@ -186,19 +186,19 @@ pub(crate) fn within(name: &'static str, given: f64, is_accepted: bool, accepted
     if is_accepted { Ok(()) } else { Err(Error::Camera { name, given, accepted }) }
 }
 
-/// A plane in camera coordinates, Hessian normal form `normal . P + distance = 0`, metres. The
+/// A plane in Hessian normal form, `normal . P + distance = 0`, in camera coordinates, metres. The
 /// normal has length 1 and points to the camera's side, so `distance >= 0` is the camera's distance
 /// from the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Hessian {
+pub struct HessianNormalForm {
     /// Unit normal in camera coordinates, towards the camera.
     pub normal: [f64; 3],
     /// Distance of the camera from the plane, metres.
     pub distance: f64,
 }
 
-impl Hessian {
+impl HessianNormalForm {
     /// The plane whose inverse depth is `1/z = a u + b v + c` (1/m, pixels); `None` if all three
     /// are 0 (a plane at infinity).
     ///
@@ -209,7 +209,7 @@ impl Hessian {
         if !(length > 0.0 && length.is_finite()) {
             return None;
         }
-        Some(Hessian { normal: m.map(|x| -x / length), distance: length.recip() })
+        Some(HessianNormalForm { normal: m.map(|x| -x / length), distance: length.recip() })
     }
 
     /// The coefficients (a, b, c) of `1/z = a u + b v + c`, the other way; `None` for a plane

@@ -67,7 +67,7 @@ mod statistics;
 mod tests;
 mod util;
 
-pub use camera::{Hessian, Intrinsics, ValueKind};
+pub use camera::{HessianNormalForm, Intrinsics, ValueKind};
 pub use coplanar::Coplanar;
 pub use detection::{CovarianceSource, Detection, Part, Plane};
 pub use detector::Detector;
@@ -86,6 +86,6 @@ pub mod internals {
     pub use crate::components::selection::{LabelledRun, Selection};
     pub use crate::components::{Compiles, ConnectedComponents, Connectivity, Groups, Kernel, Run, best, kernels};
     pub use crate::methods::{Enhancer, Fillable};
-    pub use crate::statistics::least_squares::{AffineFit, Moments, ValueSums, hessian, metric_covariance};
+    pub use crate::statistics::least_squares::{AffineFit, Moments, ValueSums, hessian_normal_form, metric_covariance};
     pub use crate::statistics::{PlaneStatistics, PlaneSums, Seen};
 }

@@ -1,6 +1,6 @@
 //! What is known of how a map came about: what its numbers mean, the camera, the noise.
 
-use crate::camera::{Hessian, Intrinsics, ValueKind};
+use crate::camera::{HessianNormalForm, Intrinsics, ValueKind};
 use crate::error::{Error, Result};
 use crate::lens::distortion::Distortion;
 use crate::noise::sensor_noise::SensorNoise;
@@ -110,8 +110,8 @@ impl Default for Sensor {
     }
 }
 
-impl Hessian {
-    /// As [`Hessian::point_at`], on the true ray behind a lens.
+impl HessianNormalForm {
+    /// As [`HessianNormalForm::point_at`], on the true ray behind a lens.
     pub(crate) fn point_seen_by(&self, [u, v]: [f64; 2], sensor: &Sensor) -> Option<[f64; 3]> {
         self.point_along(sensor.ray(u, v)?)
     }

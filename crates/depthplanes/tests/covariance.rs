@@ -1,16 +1,17 @@
 //! Covariances of planes against the truth: the normalised error squared of (normal, distance) has 3 degrees of
 //! freedom, since the normal has two, and so the mean 3.
 
-use depthplanes::internals::{Moments, hessian, metric_covariance};
+use depthplanes::internals::{Moments, hessian_normal_form, metric_covariance};
 use depthplanes::noise::{NoiseTable, SensorNoise};
 use depthplanes::scene::{Random, SceneFrame, SensorModel, Spec};
 use depthplanes::{
-    CovarianceSource, DepthView, Detection, Detector, Hessian, Intrinsics, Ngaf, Planar, Plane, Sensor, ValueKind,
+    CovarianceSource, DepthView, Detection, Detector, HessianNormalForm, Intrinsics, Ngaf, Planar, Plane, Sensor,
+    ValueKind,
 };
 use nalgebra::{SMatrix, Vector3, Vector4};
 
 /// Error of a plane, squared, in units of its covariance; and the standard deviation of its normal, degrees.
-fn normalised(plane: &Hessian, covariance: &[[f64; 4]; 4], truth: &Hessian) -> (f64, f64) {
+fn normalised(plane: &HessianNormalForm, covariance: &[[f64; 4]; 4], truth: &HessianNormalForm) -> (f64, f64) {
     let normal = Vector3::from(plane.normal);
     let beside = if normal.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
     let first = normal.cross(&beside).normalize();
@@ -27,7 +28,7 @@ fn normalised(plane: &Hessian, covariance: &[[f64; 4]; 4], truth: &Hessian) -> (
     (error.dot(&(covariance.try_inverse().unwrap() * error)), degrees)
 }
 
-fn normalised_error(plane: &Plane, truth: &Hessian) -> f64 {
+fn normalised_error(plane: &Plane, truth: &HessianNormalForm) -> f64 {
     let metric = plane.metric.unwrap();
     normalised(&metric.plane, &metric.covariance, truth).0
 }
@@ -113,7 +114,7 @@ fn errors_of_single_planes_are_what_the_noise_says() {
         let mut random = Random::new(40);
         let scene = |_| {
             let [a, b, c] = plane(&mut random);
-            let truth = Hessian::from_inverse_depth([a, b, c], &camera()).unwrap();
+            let truth = HessianNormalForm::from_inverse_depth([a, b, c], &camera()).unwrap();
             let depth_m = |at: usize| (a * (at % WIDTH) as f64 + b * (at / WIDTH) as f64 + c).recip();
             let values: Vec<f64> = (0..WIDTH * HEIGHT).map(|at| case.value(depth_m(at), &mut random)).collect();
             let found = case.detect(&values, WIDTH, HEIGHT, camera());
@@ -130,7 +131,7 @@ fn matched<'a>(
     frame: &'a SceneFrame,
     found: &'a Detection,
     purity: f64,
-) -> impl Iterator<Item = (&'a Plane, &'a Hessian)> {
+) -> impl Iterator<Item = (&'a Plane, &'a HessianNormalForm)> {
     let mut on = vec![vec![0usize; frame.truth.planes.len() + 1]; found.planes.len() + 1];
     for (&truth, &label) in frame.truth.labels.iter().zip(&found.labels) {
         on[usize::from(label)][usize::from(truth)] += 1;
@@ -198,7 +199,7 @@ fn residuals_speak_where_the_noise_is_not_known_or_too_small() {
     let mut errors = [Vec::new(), Vec::new()];
     for _ in 0..1000 {
         let [a, b, c] = plane(&mut random);
-        let truth = Hessian::from_inverse_depth([a, b, c], &camera()).unwrap();
+        let truth = HessianNormalForm::from_inverse_depth([a, b, c], &camera()).unwrap();
         let depth_m = |at: usize| (a * (at % WIDTH) as f64 + b * (at / WIDTH) as f64 + c).recip();
         let values: Vec<u16> =
             (0..WIDTH * HEIGHT).map(|at| case.value(depth_m(at), &mut random).round() as u16).collect();
@@ -226,7 +227,7 @@ fn the_normal_of_a_small_patch_may_be_off_by_degrees() {
         let p = 1.0 / random.between(0.5, 8.0);
         let (u, v) = (random.between(0.0, 620.0).floor(), random.between(0.0, 460.0).floor());
         let [a, b] = [0; 2].map(|_| random.between(-1.0, 1.0) * p / 580.0);
-        let truth = Hessian::from_inverse_depth([a, b, p - a * u - b * v], &camera).unwrap();
+        let truth = HessianNormalForm::from_inverse_depth([a, b, p - a * u - b * v], &camera).unwrap();
         let sigma = random.between(0.2, 3.0) * 1.5e-3;
         let mut sums = Moments::default();
         for (du, dv) in (0..400).map(|k| (f64::from(k % 20), f64::from(k / 20))) {
@@ -234,7 +235,7 @@ fn the_normal_of_a_small_patch_may_be_off_by_degrees() {
         }
         let fit = sums.fit().unwrap().moved([u, v, 0.0]);
         let known = fit.covariance().map(|row| row.map(|x| x * sigma * sigma / fit.variance()));
-        let plane = hessian(&fit, &camera).unwrap();
+        let plane = hessian_normal_form(&fit, &camera).unwrap();
         let (error, degrees) = normalised(&plane, &metric_covariance(fit.abc, &known, &camera), &truth);
         // Of a covariance this small nothing but the first order is left.
         let little = metric_covariance(fit.abc, &known.map(|row| row.map(|x| 1e-8 * x)), &camera);

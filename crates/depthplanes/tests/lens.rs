@@ -1,7 +1,8 @@
 //! Planes behind lenses that distort: labels of the map's own pixels, metres as a pinhole camera would give them.
 
 use depthplanes::{
-    Coplanar, DepthView, Detector, Distortion, DistortionModel, Hessian, Intrinsics, Planar, Sensor, ValueKind,
+    Coplanar, DepthView, Detector, Distortion, DistortionModel, HessianNormalForm, Intrinsics, Planar, Sensor,
+    ValueKind,
 };
 use depthplanes::{describe_labels, outline::Outliner};
 
@@ -9,20 +10,20 @@ const WIDTH: usize = 320;
 const HEIGHT: usize = 288;
 
 /// A wall turned by a tenth, a floor and a side wall that stands at an angle, camera coordinates.
-fn room() -> [Hessian; 3] {
+fn room() -> [HessianNormalForm; 3] {
     let unit = |n: [f64; 3]| {
         let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
         n.map(|x| x / length)
     };
     [([0.1, 0.2, -1.0], 4.0), ([0.05, -0.98, -0.2], 1.2), ([1.0, 0.1, -0.3], 1.5)]
-        .map(|(normal, distance)| Hessian { normal: unit(normal), distance })
+        .map(|(normal, distance)| HessianNormalForm { normal: unit(normal), distance })
 }
 
 /// Depth in metres of each pixel and the number of its plane from 1, along the true rays.
 fn seen(sensor: &Sensor) -> (Vec<f64>, Vec<u16>) {
     let pixel = |at: usize| {
         let Some(ray) = sensor.ray((at % WIDTH) as f64, (at / WIDTH) as f64) else { return (0.0, 0) };
-        let depth = |plane: &Hessian| -plane.distance / (0..3).map(|i| plane.normal[i] * ray[i]).sum::<f64>();
+        let depth = |plane: &HessianNormalForm| -plane.distance / (0..3).map(|i| plane.normal[i] * ray[i]).sum::<f64>();
         let all = room().map(|plane| depth(&plane)).map(|depth| if depth > 0.0 { depth } else { f64::MAX });
         let nearest = (0..3).min_by(|&a, &b| all[a].total_cmp(&all[b])).unwrap();
         (all[nearest], nearest as u16 + 1)

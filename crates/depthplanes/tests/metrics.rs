@@ -5,7 +5,7 @@ use depthplanes::metrics::{
     plane_errors, segcomp,
 };
 use depthplanes::scene::Spec;
-use depthplanes::{Detector, Error, Hessian, Ngaf};
+use depthplanes::{Detector, Error, HessianNormalForm, Ngaf};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -205,9 +205,9 @@ fn a_partition_of_no_pixel_has_no_measures() {
     assert_eq!(partition(&table(&[(0, 3, 1)])).unwrap().rand_index, 1.0);
 }
 
-fn plane(normal: [f64; 3], distance: f64) -> Hessian {
+fn plane(normal: [f64; 3], distance: f64) -> HessianNormalForm {
     let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
-    Hessian { normal: normal.map(|x| x / length), distance }
+    HessianNormalForm { normal: normal.map(|x| x / length), distance }
 }
 
 #[test]

@@ -10,7 +10,7 @@ use super::grow::fewest;
 use super::pipeline::{Checkpoint, Runner};
 use super::region::{CURVED_LABEL, Region};
 use super::thresholds::EDGE_ON;
-use crate::camera::{Hessian, ValueKind};
+use crate::camera::{HessianNormalForm, ValueKind};
 use crate::detection::Detection;
 use crate::explanation::{Finding, Limit};
 use crate::methods::noise::stated;
@@ -259,7 +259,7 @@ impl Trace {
             ValueKind::InverseDepth { slope, offset } => [slope * a, slope * b, slope * c + offset],
             ValueKind::Disparity => return finding,
         };
-        match self.sensor.intrinsics.and_then(|camera| Hessian::from_inverse_depth(abc, &camera)) {
+        match self.sensor.intrinsics.and_then(|camera| HessianNormalForm::from_inverse_depth(abc, &camera)) {
             Some(plane) => {
                 let [x, y, z] = plane.normal;
                 finding
