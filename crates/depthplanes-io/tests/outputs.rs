@@ -121,7 +121,7 @@ fn planes_json_and_its_line_are_the_same_value() {
     assert!(!line.contains('\n'));
     assert_eq!(document, serde_json::from_str::<serde_json::Value>(&line).unwrap());
     assert_eq!(document["schema"], outputs::SCHEMA);
-    assert_eq!(document["parameters"], serde_json::json!({"theta": 1.5, "min": 32, "window": 0}));
+    assert_eq!(document["parameters"], serde_json::json!({"theta": 1.5, "min-pixels": 32, "window": 0}));
     assert_eq!(document["planes"].as_array().unwrap().len(), 3);
     assert!(document["planes"][2]["fit"].is_null());
     assert!(document.get("time_ms").is_none());
@@ -178,7 +178,7 @@ fn room() -> (Frame, Detection) {
     let scene =
         "room:seed=2,sensor=tof_white,size=160x120".parse::<depthplanes::scene::Spec>().unwrap().frame().unwrap();
     let depthplanes::scene::ScenePixels::U16(pixels) = &scene.pixels else { panic!("millimetres") };
-    let mut detector = Detector::new(Ngaf::default().theta(40.0).min(8)).unwrap().sensor(scene.sensor);
+    let mut detector = Detector::new(Ngaf::default().theta(40.0).min_pixels(8)).unwrap().sensor(scene.sensor);
     let found = detector.detect(scene.view()).unwrap().clone();
     let (width, height) = (scene.width, scene.height);
     (Frame { width, height, pixels: Pixels::U16(pixels.clone()), sensor: scene.sensor, ..frame() }, found)
@@ -223,7 +223,7 @@ fn a_mesh_of_exact_outlines_covers_the_area_of_each_plane_and_faces_the_camera()
             camera.fy = -camera.fy;
             frame.sensor.intrinsics = Some(camera);
             let Pixels::U16(pixels) = &frame.pixels else { unreachable!() };
-            let ngaf = Ngaf::default().theta(40.0).min(8);
+            let ngaf = Ngaf::default().theta(40.0).min_pixels(8);
             let mut detector = Detector::new(ngaf).unwrap().sensor(frame.sensor);
             let view = depthplanes::DepthView::new(pixels, frame.width, frame.height).unwrap();
             detection = detector.detect(view).unwrap().clone();

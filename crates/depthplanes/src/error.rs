@@ -105,7 +105,7 @@ pub enum Error {
     TooManyPlanes {
         /// Planes found.
         found: usize,
-        /// The method's parameters that leave fewer if they are raised, as a message has them: `` `min` or `theta` ``.
+        /// The method's parameters that leave fewer if they are raised, as a message has them: `` `min-pixels` or `theta` ``.
         raise: String,
     },
     /// Curved surfaces were asked of a method that does not tell them from planes.

@@ -168,7 +168,7 @@ fn joining_coarsens_the_labels_and_nothing_is_joined_within_nothing() {
 #[test]
 fn every_method_joins_and_threads_and_repetition_change_no_byte() {
     let frame = "room:seed=2,sensor=tof_white".parse::<Spec>().unwrap().frame().unwrap();
-    let ngaf = || Ngaf::default().theta(30.0).min(200).window(3).min_fill(0.1);
+    let ngaf = || Ngaf::default().theta(30.0).min_pixels(200).window(3).min_fill(0.1);
     let detectors: [&dyn Fn() -> Detector; 2] =
         [&|| Detector::new(Planar::default()).unwrap(), &|| Detector::new(ngaf()).unwrap()];
     for make in detectors {
@@ -250,7 +250,7 @@ fn pieces_of_one_plane_of_a_room_are_joined_and_others_are_nearly_coplanar() {
     let (mut together, mut same, mut apart, mut wrong) = (0, 0, 0, 0);
     for seed in 101..=110 {
         let frame = format!("room:seed={seed},sensor=tof_white").parse::<Spec>().unwrap().frame().unwrap();
-        let detector = || Detector::new(Planar::default().min(300)).unwrap().sensor(frame.sensor);
+        let detector = || Detector::new(Planar::default().min_pixels(300)).unwrap().sensor(frame.sensor);
         let before = detector().detect(frame.view()).unwrap().clone();
         let mut joining = detector().merge_coplanar(Coplanar::default()).unwrap();
         let new = coarsening(&before, joining.detect(frame.view()).unwrap());

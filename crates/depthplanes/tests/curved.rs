@@ -232,7 +232,7 @@ fn no_pixel_is_both_curved_and_in_a_plane() {
         let map: Vec<u16> = (0..width * height).map(|at| value(at, &mut random)).collect();
         let view = DepthView::new(&map, width, height).unwrap();
         for (scale, threshold) in [(1.0, 3.0), (0.02, 0.6), (0.1, 20.0)] {
-            let planar = Planar::default().min(3).noise_scale(scale).inlier_threshold(threshold);
+            let planar = Planar::default().min_pixels(3).noise_scale(scale).inlier_threshold(threshold);
             let mut detector = Detector::new(planar).unwrap().curved(true);
             let found = detector.detect(view).unwrap();
             let curved = &found.curved.as_ref().unwrap().labels;

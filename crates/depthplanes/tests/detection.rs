@@ -134,7 +134,7 @@ fn sensors() -> [Sensor; 4] {
 fn random_params(random: &mut Random) -> Ngaf {
     let window = [0, 0, 3, 5, 9][random.below(5) as usize];
     let passes = 1 + random.below(3) as u32;
-    Ngaf::default().theta(random.below(5) as f64).min(random.below(12) as u32).window(window).passes(passes)
+    Ngaf::default().theta(random.below(5) as f64).min_pixels(random.below(12) as u32).window(window).passes(passes)
 }
 
 /// Runs `test` on the same map as `u8`, `u16` times 50 and `f32` divided by 8.
@@ -162,7 +162,7 @@ fn detections_on_random_maps_are_what_they_say() {
             check(&found, view, &params, sensor, &format!("case {case}, {width}x{height}, {params:?}"));
             let (map, _) = enhanced(&view, &params);
             let groups = naive::flood(&map, width, is_valid(&view), params.theta, !is_whole(&view));
-            assert!(found.labels == naive::select(&groups, params.min as usize), "case {case}, {params:?}");
+            assert!(found.labels == naive::select(&groups, params.min_pixels as usize), "case {case}, {params:?}");
         });
     }
 }
@@ -207,7 +207,7 @@ fn any_number_of_threads_gives_the_same_detection() {
     }
     for (width, height, map) in &maps {
         as_each_type(map, *width, *height, |view, unit| {
-            let params = Ngaf::default().theta(unit).min(200).window(3).max_rms(90.0 * unit);
+            let params = Ngaf::default().theta(unit).min_pixels(200).window(3).max_rms(90.0 * unit);
             let on = |threads: usize| {
                 let mut detector = Detector::new(params).unwrap().sensor(sensors()[1]).threads(threads);
                 detector.detect(view).unwrap().clone()
@@ -224,7 +224,7 @@ fn any_number_of_threads_gives_the_same_detection() {
 fn a_used_detector_answers_like_a_fresh_one() {
     let mut random = Random(73);
     for sensor in sensors() {
-        let params = Ngaf::default().theta(2.0).min(3).window(5).passes(2).min_fill(0.3);
+        let params = Ngaf::default().theta(2.0).min_pixels(3).window(5).passes(2).min_fill(0.3);
         let mut used = Detector::new(params).unwrap().sensor(sensor).threads(2);
         for case in 0..300 {
             let (width, height) = match case % 60 {
@@ -246,7 +246,7 @@ fn a_used_detector_answers_like_a_fresh_one() {
 
 #[test]
 fn a_detector_recovers_from_a_map_with_too_many_planes() {
-    let params = Ngaf::default().min(0);
+    let params = Ngaf::default().min_pixels(0);
     let board: Vec<u8> = (0..400 * 400).map(|at| 1 + ((at % 400 + at / 400) % 2 * 100) as u8).collect();
     let mut detector = Detector::new(params).unwrap();
     let flat = [7u8; 30];
@@ -278,7 +278,7 @@ fn own_conditions_drop_the_planes_that_the_table_says() {
         let (width, height) = (1 + random.below(60) as usize, 1 + random.below(40) as usize);
         let map = naive::awkward_map(&mut random, width, height);
         let view = DepthView::new(&map, width, height).unwrap();
-        let plain = Ngaf::default().theta(random.below(6) as f64).min(random.below(9) as u32);
+        let plain = Ngaf::default().theta(random.below(6) as f64).min_pixels(random.below(9) as u32);
         let pick = |random: &mut Random, choices: [f64; 4]| choices[random.below(4) as usize];
         let params = plain
             .max_rms(pick(&mut random, [0.0, 0.05, 0.7, 2.0]) * (1.0 + 1e-6))
@@ -296,7 +296,7 @@ fn own_conditions_drop_the_planes_that_the_table_says() {
             let area = (u_max - u_min + 1) * (v_max - v_min + 1);
             let inner = (0..map.len()).filter(|&at| all.labels[at] == label && is_inner(at)).count();
             let flat = params.max_rms == 0.0 || record.fit.is_some_and(|fit| fit.rms <= params.max_rms);
-            flat && record.pixel_count as f64 / area as f64 >= params.min_fill && inner > params.min as usize
+            flat && record.pixel_count as f64 / area as f64 >= params.min_fill && inner > params.min_pixels as usize
         };
         let records = naive::records(&all.labels, &values, width);
         let keep: Vec<bool> = records.iter().zip(1..).map(accepts).collect();
@@ -324,7 +324,7 @@ fn conditions_off_are_no_conditions() {
     assert_eq!(planes(Ngaf::default().min_fill(76.0 / 400.0), ring), 1);
     assert_eq!(planes(Ngaf::default().min_fill(0.2), ring), 0);
     // All of the ring lies at the edge.
-    assert_eq!(planes(Ngaf::default().margin(1).min(0), ring), 0);
+    assert_eq!(planes(Ngaf::default().margin(1).min_pixels(0), ring), 0);
 }
 
 /// Compares planes whose pixels all show one true plane with it; returns how many there were.

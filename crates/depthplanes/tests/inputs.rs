@@ -99,7 +99,7 @@ fn infinities_are_missing_even_within_an_infinite_range() {
     assert_eq!(view.valid_range(0.5, f32::INFINITY).unwrap().valid_pixels(), 2);
     assert_eq!(view.valid_range(f32::NEG_INFINITY, f32::INFINITY).unwrap().valid_pixels(), 3);
     assert_eq!(view.valid_range(f32::NEG_INFINITY, 0.5).unwrap().valid_pixels(), 1);
-    let mut detector = Detector::new(Ngaf::default().theta(1.0).min(0).window(3)).unwrap();
+    let mut detector = Detector::new(Ngaf::default().theta(1.0).min_pixels(0).window(3)).unwrap();
     let found = detector.detect(view.valid_range(0.5, f32::INFINITY).unwrap()).unwrap();
     assert_eq!(found.labels[1], 0);
 }

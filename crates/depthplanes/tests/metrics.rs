@@ -267,7 +267,7 @@ fn the_angle_between_correct_neighbours_is_compared() {
 fn the_largest_planes_found_in_a_clean_scene_lie_where_they_are() {
     let frame = "room:sensor=clean_mm".parse::<Spec>().unwrap().frame().unwrap();
     let truth = &frame.truth;
-    let mut detector = Detector::new(Ngaf::default().theta(4.0).min(1000)).unwrap().sensor(frame.sensor);
+    let mut detector = Detector::new(Ngaf::default().theta(4.0).min_pixels(1000)).unwrap().sensor(frame.sensor);
     let detection = detector.detect(frame.view()).unwrap();
     let found = segcomp(&Contingency::new(&truth.labels, &detection.labels).unwrap(), Tolerance::default());
     let true_plane = |label: u16| truth.planes.get(usize::from(label) - 1).map(|plane| plane.plane);

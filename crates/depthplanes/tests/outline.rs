@@ -382,7 +382,7 @@ fn detect(
     };
     let map: Vec<f32> = (0..width * height).map(value).collect();
     let sensor = Sensor::default().value_kind(ValueKind::Depth { metres: 1.0 }).intrinsics(Some(camera));
-    let mut detector = Detector::new(Ngaf::default().theta(1e6).min(3)).unwrap().sensor(sensor);
+    let mut detector = Detector::new(Ngaf::default().theta(1e6).min_pixels(3)).unwrap().sensor(sensor);
     (detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap().clone(), sensor)
 }
 

@@ -28,13 +28,21 @@ fn sensors_and_parameters_are_read_back_as_they_were() {
     let camera = Intrinsics::new(525.0, 520.0, 319.5, 239.5).unwrap();
     let sensor = Sensor::default().value_kind(ValueKind::stereo(1.0, 500.0, 0.1, 0.0).unwrap()).intrinsics(camera);
     same(&sensor.noise(SensorNoise::Table(table)));
-    same(&Planar::default().min(7).inlier_threshold(2.5));
+    same(&Planar::default().min_pixels(7).inlier_threshold(2.5));
     same(&Ngaf::default().window(5));
 }
 
 #[test]
 fn what_is_left_out_of_parameters_is_the_default() {
-    assert_eq!(serde_json::from_str::<Planar>(r#"{"min": 500}"#).unwrap(), Planar::default().min(500));
+    assert_eq!(serde_json::from_str::<Planar>(r#"{"min_pixels": 500}"#).unwrap(), Planar::default().min_pixels(500));
+}
+
+#[test]
+fn the_papers_word_for_a_parameter_is_read_and_its_name_is_written() {
+    assert_eq!(serde_json::from_str::<Planar>(r#"{"min": 500}"#).unwrap(), Planar::default().min_pixels(500));
+    let ngaf: Ngaf = serde_json::from_str(r#"{"min": 64}"#).unwrap();
+    assert_eq!(ngaf, Ngaf::default().min_pixels(64));
+    assert_eq!(serde_json::to_value(ngaf).unwrap()["min_pixels"], 64);
 }
 
 #[test]

@@ -168,7 +168,7 @@ mod tests {
     use super::*;
 
     fn key(dataset: &str, map: &str) -> Key {
-        let [method, parameters, version] = ["planar", "min 100", "v"].map(str::to_string);
+        let [method, parameters, version] = ["planar", "min-pixels 100", "v"].map(str::to_string);
         Key { dataset: dataset.into(), map: map.into(), label: method.clone(), method, parameters, version, repeat: 1 }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! In: a map. Out: its detection. For an enlarged map ([`EnlargementFinder`]) the stages see the source: one value a
 //! pixel, seen by a camera of as many pixels. Its planes are then painted on the whole map, grouped, selected and
-//! fitted there, so that `min`, areas and places are those of the map that was given. Repeated pixels say no more
+//! fitted there, so that `min-pixels`, areas and places are those of the map that was given. Repeated pixels say no more
 //! than one: errors of planes are those of the source's pixels.
 
 use super::explain::explain;
@@ -21,7 +21,7 @@ use crate::noise::{Enlargement, EnlargementFinder};
 use crate::sensor::Sensor;
 use crate::util::memory::reserve_to;
 
-/// Fewest pixels of the source that are asked of a plane: those of a tile. `min` may be less than that.
+/// Fewest pixels of the source that are asked of a plane: those of a tile. `min-pixels` may be less than that.
 const TILE: u32 = 16;
 
 /// The source of a map and what was found in it; reuses its memory.
@@ -51,7 +51,7 @@ impl Source {
     ) -> Result<()> {
         let Source { finder, pixels, found, image, extraction, pieces } = self;
         let Some(enlargement) = finder.find(map) else { return runner.planar(*map, job, out, &mut |_, _, _| ()) };
-        let Planar { min, min_area, .. } = runner.params;
+        let Planar { min_pixels, min_area, .. } = runner.params;
         if min_area > 0.0 {
             job.sensor.check_metric("min-area")?;
         }
@@ -62,13 +62,13 @@ impl Source {
             runner.planar(view, job, found, &mut |_, _, seen| noise = Some(*seen))
         })?;
         let labels = enlarge(&found.labels, &enlargement, map, image)?;
-        let wanted = Wanted { min, min_area, noise: noise.as_ref(), valid_pixels: map.valid_pixels() };
+        let wanted = Wanted { min_pixels, min_area, noise: noise.as_ref(), valid_pixels: map.valid_pixels() };
         extraction.extract_united(map, &labels, &wanted, |components| pieces.join(&labels, components), job, out)?;
         errors_of_source(found, labels, &enlargement, out);
         let old = out.curved.take();
         if let Some(curved) = &found.curved {
             let labels = enlarge(&curved.labels, &enlargement, map, image)?;
-            out.curved = Some(extraction.extract_curved(map, &labels, min, job, old)?);
+            out.curved = Some(extraction.extract_curved(map, &labels, min_pixels, job, old)?);
             job.done("label");
         }
         Ok(())
@@ -103,7 +103,7 @@ impl Source {
             format!("the pixel's source, column {}, row {}: what follows is of the source", place[0], place[1]);
         let finding = Finding::new("map", subject, "the map was enlarged by repeating pixels");
         explanation.findings.insert(0, finding.with("columns", x, "").with("rows", y, ""));
-        explanation.verdict = self.verdict(explanation.verdict, runner.params.min, factor, &out, at);
+        explanation.verdict = self.verdict(explanation.verdict, runner.params.min_pixels, factor, &out, at);
         let values = runner.params.values();
         let planes = out.planes.len();
         let tries = Tries { info, values: &values, map: (*map).into(), sensor: job.sensor, at, planes };
@@ -113,7 +113,14 @@ impl Source {
     }
 
     /// The verdict on a source pixel as one on pixels of the whole map.
-    fn verdict(&self, of_source: Verdict, min: u32, [x, y]: [f64; 2], out: &Detection, at: [usize; 2]) -> Verdict {
+    fn verdict(
+        &self,
+        of_source: Verdict,
+        min_pixels: u32,
+        [x, y]: [f64; 2],
+        out: &Detection,
+        at: [usize; 2],
+    ) -> Verdict {
         let whole = |pixels: usize| (pixels as f64 * x * y).round() as usize;
         let label = out.labels[at[1] * out.width + at[0]];
         match of_source {
@@ -121,8 +128,8 @@ impl Source {
                 let off = if let Verdict::Plane { off, .. } = of_source { off } else { None };
                 Verdict::Plane { label, pixels: out.planes[usize::from(label) - 1].pixel_count, off }
             }
-            Verdict::Plane { pixels, .. } => Verdict::Small { pixels: whole(pixels), min, early: false },
-            Verdict::Small { pixels, early, .. } => Verdict::Small { pixels: whole(pixels), min, early },
+            Verdict::Plane { pixels, .. } => Verdict::Small { pixels: whole(pixels), min_pixels, early: false },
+            Verdict::Small { pixels, early, .. } => Verdict::Small { pixels: whole(pixels), min_pixels, early },
             Verdict::Off { off, most, label } => Verdict::Off { off, most, label: self.label_of(label, out) },
             other => other,
         }
@@ -138,7 +145,7 @@ impl Source {
 /// The suggestions for a source pixel that work on the whole map too.
 fn retried(suggestions: Vec<Suggestion>, tries: &Tries<'_>, [x, y]: [f64; 2]) -> Vec<Suggestion> {
     let of_whole = |(name, value): (&'static str, f64)| match name {
-        "min" => (name, (value * x.floor() * y.floor()).floor()),
+        "min-pixels" => (name, (value * x.floor() * y.floor()).floor()),
         _ => (name, value),
     };
     let changes = suggestions.into_iter().map(|suggestion| suggestion.parameters.into_iter().map(of_whole).collect());
@@ -155,10 +162,13 @@ fn with_source<R>(
 ) -> Result<R> {
     let [x, y] = enlargement.factor;
     let params = runner.params;
-    // A plane of more than `min` pixels has more than this of the source, whatever the blocks.
-    let min = params.min / (x.ceil() * y.ceil()) as u32;
-    runner.params =
-        Planar { min: min.max(params.min.min(TILE)), lateral_noise: params.lateral_noise / (x * y).sqrt(), ..params };
+    // A plane of more than `min-pixels` pixels has more than this of the source, whatever the blocks.
+    let min_pixels = params.min_pixels / (x.ceil() * y.ceil()) as u32;
+    runner.params = Planar {
+        min_pixels: min_pixels.max(params.min_pixels.min(TILE)),
+        lateral_noise: params.lateral_noise / (x * y).sqrt(),
+        ..params
+    };
     // Pixel centres are at integers.
     let camera = |Intrinsics { fx, fy, cx, cy }| Intrinsics {
         fx: fx / x,
@@ -317,13 +327,13 @@ mod tests {
         let camera = Intrinsics { fx: 500.0, fy: 480.0, cx: 319.5, cy: 200.0 };
         let sensor = Sensor { value_kind: ValueKind::Disparity, intrinsics: Some(camera), ..Sensor::default() };
         let enlargement = Enlargement { columns: &[0], rows: &[0], factor: [2.0, 3.0] };
-        let params = Planar { min: 600, lateral_noise: 0.6, ..Planar::default() };
+        let params = Planar { min_pixels: 600, lateral_noise: 0.6, ..Planar::default() };
         let mut runner = Runner { params, ..Runner::default() };
         let mut told = Vec::new();
         let mut observer = |stage| told.push(stage);
         let mut job = Job { sensor, threads: 1, curved: true, joiner: None, observer: &mut observer };
         with_source(&mut runner, &mut job, &enlargement, |runner, job| {
-            assert_eq!((runner.params.min, job.curved), (100, true));
+            assert_eq!((runner.params.min_pixels, job.curved), (100, true));
             assert!((runner.params.lateral_noise - 0.6 / 6.0f64.sqrt()).abs() < 1e-12);
             let source = job.sensor.intrinsics.unwrap();
             // The middle of a source pixel is the middle of its block.
@@ -340,11 +350,11 @@ mod tests {
         // Stages of the whole map are told by the whole map alone.
         assert_eq!(told, ["tiles", "grow"]);
         // A plane of the source has a tile, unless fewer pixels are asked for.
-        for (min, expected) in [(30, TILE), (10, 10), (0, 0)] {
-            let mut runner = Runner { params: Planar { min, ..params }, ..Runner::default() };
+        for (min_pixels, expected) in [(30, TILE), (10, 10), (0, 0)] {
+            let mut runner = Runner { params: Planar { min_pixels, ..params }, ..Runner::default() };
             let mut job = Job { sensor, threads: 1, curved: false, joiner: None, observer: &mut |_| () };
             with_source(&mut runner, &mut job, &enlargement, |runner, _| {
-                assert_eq!(runner.params.min, expected);
+                assert_eq!(runner.params.min_pixels, expected);
                 Ok(())
             })
             .unwrap();

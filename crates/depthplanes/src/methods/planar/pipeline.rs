@@ -263,7 +263,7 @@ impl Runner {
         let Runner { params, affine, image, extraction, bridge, .. } = self;
         let ids = of_image(image, affine)?;
         let wanted = Wanted {
-            min: params.min,
+            min_pixels: params.min_pixels,
             min_area: params.min_area,
             noise: Some(noise),
             valid_pixels: affine.valid_pixels,
@@ -299,7 +299,7 @@ impl Runner {
         for (ids, labels) in image.chunks_exact_mut(affine.stride).zip(planes.chunks_exact(map.width())) {
             ids.iter_mut().zip(labels).filter(|(_, label)| **label > 0).for_each(|(id, _)| *id = 0);
         }
-        extraction.extract_curved(map, &of_image(image, affine)?, params.min, job, old)
+        extraction.extract_curved(map, &of_image(image, affine)?, params.min_pixels, job, old)
     }
 
     /// The label that most of a region's pixels have, 0 for none.

@@ -376,9 +376,9 @@ impl Trace {
     fn conclude_piece(&mut self, run: &Runner) {
         let groups = run.extraction.components.groups();
         self.piece = groups.sizes()[groups.at(self.at) as usize] as usize;
-        self.is_large = self.piece > run.params.min as usize;
+        self.is_large = self.piece > run.params.min_pixels as usize;
         let outcome = if self.is_large { "large enough" } else { "too small" };
-        let limit = Limit::MoreThan(run.params.min.into());
+        let limit = Limit::MoreThan(run.params.min_pixels.into());
         let finding = Finding::new("group", "its connected piece", outcome).with("pixels", self.piece as f64, "");
         self.findings.push(finding.limit(limit).refusing(!self.is_large));
     }
