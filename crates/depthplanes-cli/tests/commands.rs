@@ -207,7 +207,7 @@ fn help_shows_the_default_methods_parameters_and_takes_those_of_all() {
     {
         assert!(short.contains(flag), "{flag}\n{short}");
     }
-    assert!(short.contains("[aliases: --min]"), "{short}");
+    assert!(short.contains("[pixels, default 100; or --min]"), "{short}");
     bench.run(&["detect", "map.pgm", "--method", "ngaf", "--theta", "3"]).ok();
     let man = bench.run(&["man", "--out-dir", "m"]).ok();
     assert!(man.contains("pages in m"));
