@@ -83,7 +83,7 @@ def cases():
 def detect(program, data, case, repeat=None, overlay=None):
     """The record of one case."""
     _, _, file, _, theta, window, least, flags = case
-    command = [program, "detect", data / file, "--method", "ngaf", "--theta", theta, "--min", least, "--window", window,
+    command = [program, "detect", data / file, "--method", "ngaf", "--theta", theta, "--min-pixels", least, "--window", window,
                "--json", *flags]
     command += ["--repeat", repeat] if repeat else []
     command += ["--overlay", overlay] if overlay else []
@@ -153,7 +153,7 @@ python benchmarks/paper_tables.py --program target/release/depthplanes --data DA
 DATA is a folder with the maps named below. Each row is the median of {repeat} repetitions of
 
 ```
-depthplanes detect DATA/FILE --method ngaf --theta THETA --min MIN --window WINDOW --json --repeat {repeat}
+depthplanes detect DATA/FILE --method ngaf --theta THETA --min-pixels MIN --window WINDOW --json --repeat {repeat}
 ```
 
 on one thread of {processor()}, {datetime.date.today()}; for 7-Scenes with `--missing 65535`.
@@ -163,7 +163,7 @@ on one thread of {processor()}, {datetime.date.today()}; for 7-Scenes with `--mi
 | unit | what one unit of theta is: theta compares the values as they stand in the file, nothing is rescaled |
 | theta | largest difference between neighbours of one group, units |
 | window | side of the window that fills missing pixels before grouping (paper, 3b), or off |
-| min | a plane has more pixels than this |
+| min | `--min-pixels`, by the paper's name: a plane has more pixels than this |
 | valid | pixels of the file that hold a value |
 | filled | missing pixels that enhancing filled |
 | planes | groups of more than min pixels |

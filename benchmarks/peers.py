@@ -139,14 +139,14 @@ class Refused(Exception):
     """Why a peer cannot do a map."""
 
 
-SEARCH = f"tolerance 1 % of the diagonal, min {MIN}, draws {DRAWS}, seed {SEED}"
-PATCHES = f"normal variance 60, coplanarity 75, outliers 0.75, edge 0, min 0, neighbours {NEIGHBOURS}, seed {SEED}"
+SEARCH = f"tolerance 1 % of the diagonal, min-pixels {MIN}, draws {DRAWS}, seed {SEED}"
+PATCHES = f"normal variance 60, coplanarity 75, outliers 0.75, edge 0, min-pixels 0, neighbours {NEIGHBOURS}, seed {SEED}"
 # Name: its function, the module, the package it comes in, its parameters.
 PEERS = {
     "open3d-segment-plane": (open3d_segment_plane, "open3d", "open3d", SEARCH),
     "open3d-planar-patches": (open3d_planar_patches, "open3d", "open3d", PATCHES),
     "pyransac3d-plane": (pyransac3d_plane, "pyransac3d", "pyransac3d", SEARCH),
-    "cc3d-components": (cc3d_components, "cc3d", "connected-components-3d", f"theta {THETA}, min {SMALLEST}"),
+    "cc3d-components": (cc3d_components, "cc3d", "connected-components-3d", f"theta {THETA}, min-pixels {SMALLEST}"),
 }
 
 

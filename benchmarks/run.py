@@ -28,7 +28,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 EXAMPLES = ROOT / "target" / "release" / "examples"
 WARM_UP_MS = 10  # the worker's too; a processor that was waiting takes that long to its full speed
-FIELDS = ["frame", "width", "height", "type", "theta", "min", "runs", "planes", "ours_us", "copy_us",
+FIELDS = ["frame", "width", "height", "type", "theta", "min_pixels", "runs", "planes", "ours_us", "copy_us",
           "cc3d_filter_us", "cc3d_alone_us", "filter_speckles_us", "times_cc3d_filter", "times_cc3d_alone",
           "times_filter_speckles", "copies_of_the_frame", "ours_ns_per_pixel"]
 
@@ -46,7 +46,7 @@ def real(data, path):
 
 
 def frames(data):
-    """(name, map, theta, min): quantised and raw noisy ones, small and large."""
+    """(name, map, theta, min_pixels): quantised and raw noisy ones, small and large."""
     large = "size=4096x3000"
     yield "synthetic room, disparity 8 bit", synthetic("room:sensor=disparity", np.uint8), 1, 64
     room = synthetic("room:sensor=kinect_white", np.uint16)
@@ -165,7 +165,7 @@ def measure(name, depth, theta, least, rounds, threads):
     row = {rival: statistics.median(values) for rival, values in times.items()}
     ours = row["ours_us"]
     row |= {"frame": name, "width": depth.shape[1], "height": depth.shape[0], "type": depth.dtype.name, "theta": theta,
-            "min": least, "runs": runs, "planes": int(labels.max()), "times_cc3d_filter": row["cc3d_filter_us"] / ours,
+            "min_pixels": least, "runs": runs, "planes": int(labels.max()), "times_cc3d_filter": row["cc3d_filter_us"] / ours,
             "times_cc3d_alone": row["cc3d_alone_us"] / ours, "copies_of_the_frame": ours / row["copy_us"],
             "ours_ns_per_pixel": 1000 * ours / depth.size}
     if speckles:

@@ -14,7 +14,7 @@ FLOAT_SCALES = [1.0, 0.001, 1 / 3, 0.1, 1000.0, 1e30, 1e-40]
 
 
 def random_case(rng, kind, pattern):
-    """(map, theta, min): a map of the pixel type `kind` and parameters that suit it."""
+    """(map, theta, min_pixels): a map of the pixel type `kind` and parameters that suit it."""
     height, width = side(rng), side(rng)
     step = int(rng.choice([1, 2, 3, 8, 64]))
     units = PATTERN_MAKERS[pattern](rng, height, width, step)

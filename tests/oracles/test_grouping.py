@@ -25,7 +25,7 @@ def check(worker, depth, theta, least, where):
         for threads, labels in enumerate(images, 1):
             if not np.array_equal(labels, expected):
                 v, u = np.argwhere(labels != expected)[0]
-                pytest.fail(f"{where}: theta {theta}, min {least}, kernel {kernel}, {threads} thread(s): pixel "
+                pytest.fail(f"{where}: theta {theta}, min-pixels {least}, kernel {kernel}, {threads} thread(s): pixel "
                             f"({u}, {v}) has label {labels[v, u]}, cc3d's is {expected[v, u]}")
     return count, len(worker.kernels) * THREADS
 
@@ -82,7 +82,7 @@ def test_real_maps_equal_cc3d(worker, data, tell):
             check(worker, depth, theta, least, path)
             compared += 1
     kinds = {name: list(seen.values()).count(name) for name in sorted(set(seen.values()))}
-    tell(f"{len(seen)} real maps ({kinds}) at {len(THETAS)} thetas; min above 0 was needed {raised} times:")
+    tell(f"{len(seen)} real maps ({kinds}) at {len(THETAS)} thetas; min-pixels above 0 was needed {raised} times:")
     assert len(seen) == REAL_MAPS
     assert compared == REAL_MAPS * len(THETAS)
     assert set(kinds) == {"uint8", "uint16", "float32"}

@@ -155,7 +155,7 @@ def test_truth_labels_below_the_lowest_count_as_no_plane(program, random_pairs):
 def test_a_detection_in_icl_nuim_scores_as_evops(program, data, tmp_path, tell):
     found = tmp_path / "found.npy"
     detect = [program, "detect", data / "gt_evops/icl_0.depth.png", "--encoding", "tum", "--method", "ngaf",
-              "--theta", "12", "--min", "1500", "--labels", found]
+              "--theta", "12", "--min-pixels", "1500", "--labels", found]
     subprocess.run(detect, capture_output=True, check=True)
     truth_file = data / "gt_evops/icl_0.labels.png"
     truth, prediction = cv2.imread(str(truth_file), cv2.IMREAD_UNCHANGED), np.load(found)

@@ -32,7 +32,7 @@ def detect(program, folder, image, *flags):
     source, labels = folder / "map.pgm", folder / "labels.png"
     header = f"P5 {image.shape[1]} {image.shape[0]} 65535\n".encode()
     source.write_bytes(header + (1000 * image).astype(">u2").tobytes())
-    command = [program, "detect", source, "--method", "ngaf", "--theta", "0", "--min", "0", "--labels", labels,
+    command = [program, "detect", source, "--method", "ngaf", "--theta", "0", "--min-pixels", "0", "--labels", labels,
                "--json", *flags]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
     return json.loads(done.stdout), cv2.imread(str(labels), cv2.IMREAD_UNCHANGED)

@@ -88,7 +88,7 @@ def test_evops_icl(program, data, tell, tmp_path, setting, least):
 NYU_FARTHEST = 350
 
 
-@pytest.mark.parametrize("setting, least", [([], 2.4), (["--min", "1000"], 2.9)])
+@pytest.mark.parametrize("setting, least", [([], 2.4), (["--min-pixels", "1000"], 2.9)])
 def test_nyu_dpd(program, data, tell, tmp_path, setting, least):
     reading = ["--encoding", "millimetre", "--noise-growth", "0.075"]
     found = []

@@ -9,14 +9,14 @@ from rivals import components, least_for_16_bits, speckle_mask, takes_speckles
 RANDOM_MAPS_PER_TYPE = 2000
 REAL_MAPS = 218
 SIZES = [0, 1, 7, 32, 256]
-REAL_CASES = [(1, 32), (2, 256), (16, 64)]  # theta, min
+REAL_CASES = [(1, 32), (2, 256), (16, 64)]  # theta, min-pixels
 
 
 def check(worker, depth, theta, least, where):
     expected = speckle_mask(depth, theta, least)
     for kernel, images in zip(worker.kernels, worker.labels(depth, theta, least, 2)):
         for labels in images:
-            assert np.array_equal(labels != 0, expected), f"{where}: theta {theta}, min {least}, kernel {kernel}"
+            assert np.array_equal(labels != 0, expected), f"{where}: theta {theta}, min-pixels {least}, kernel {kernel}"
     return expected
 
 
@@ -47,6 +47,6 @@ def test_real_maps_keep_what_opencv_keeps(worker, data, tell):
         for theta, least in REAL_CASES:
             check(worker, depth, theta, least_for_16_bits(*components(depth, theta), least), path)
             compared += 1
-    tell(f"{len(seen)} real maps against filterSpeckles at {len(REAL_CASES)} pairs of theta and min:")
+    tell(f"{len(seen)} real maps against filterSpeckles at {len(REAL_CASES)} pairs of theta and min-pixels:")
     assert len(seen) == REAL_MAPS
     assert compared == REAL_MAPS * len(REAL_CASES)

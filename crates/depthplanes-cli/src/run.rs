@@ -41,7 +41,7 @@ impl Recipe {
     pub(crate) fn new(method: &'static MethodInfo, given: &[(&'static str, f64)], threads: usize) -> Outcome<Self> {
         let mut values = method.defaults();
         for &(name, value) in given {
-            let at = method.params.iter().position(|param| param.name == name);
+            let at = method.position(name);
             values[at.ok_or_else(|| lacks(method, name))?] = value;
         }
         drop(method.with(given)?); // they are checked
@@ -55,7 +55,7 @@ impl Recipe {
     /// An unknown method, a parameter that none of them has, a value out of range.
     pub(crate) fn several(names: &[String], given: &[(&'static str, f64)], threads: usize) -> Outcome<Vec<Self>> {
         let all = names.iter().map(|name| Ok(methods::find(name)?)).collect::<Outcome<Vec<_>>>()?;
-        let has = |method: &MethodInfo, name: &str| method.params.iter().any(|param| param.name == name);
+        let has = |method: &MethodInfo, name: &str| method.position(name).is_some();
         if let Some((name, _)) = given.iter().find(|(name, _)| !all.iter().any(|method| has(method, name))) {
             return Err(Failure::request(format!("none of {} has a parameter `{name}`", names.join(", "))));
         }
@@ -147,7 +147,7 @@ impl Recipe {
 
 /// A parameter of another method: which has it, and what this one has.
 fn lacks(method: &MethodInfo, name: &str) -> Failure {
-    let owners = METHODS.iter().filter(|other| other.params.iter().any(|param| param.name == name));
+    let owners = METHODS.iter().filter(|other| other.position(name).is_some());
     let owners: Vec<String> = owners.map(|other| format!("--method {}", other.name)).collect();
     let has: Vec<String> = method.params.iter().map(|param| format!("--{}", param.name.replace('_', "-"))).collect();
     Failure::request(format!(

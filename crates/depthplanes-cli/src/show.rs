@@ -3,7 +3,7 @@
 use crate::table::{Align, aligned, row};
 use crate::terminal::plain;
 use depthplanes::detection::Curved;
-use depthplanes::{Detection, Measure, Plane};
+use depthplanes::{Detection, Plane, ValueKind};
 use depthplanes_io::Frame;
 use depthplanes_io::outputs::{Report, Times, depth_m, noise_in_words};
 
@@ -46,14 +46,14 @@ pub(crate) fn summary(report: &Report<'_>) -> String {
 pub(crate) fn camera_hint(report: &Report<'_>, preset: bool) -> String {
     let sensor = report.frame.sensor;
     let adds = "adds distance, normal and area in metres";
-    match sensor.measure {
+    match sensor.value_kind {
         // Neither grey levels nor relative depth have metres, whatever the camera.
-        Measure::Disparity if ["grey", "inverse-depth"].contains(&report.frame.encoding) => String::new(),
+        ValueKind::Disparity if ["grey", "inverse-depth"].contains(&report.frame.encoding) => String::new(),
         _ if sensor.intrinsics.is_some() => String::new(),
-        Measure::Disparity => {
+        ValueKind::Disparity => {
             format!("no camera: --baseline METRES with --intrinsics FX,FY,CX,CY or --camera FILE {adds}\n")
         }
-        _ if preset || matches!(sensor.measure, Measure::InverseDepth { .. }) => {
+        _ if preset || matches!(sensor.value_kind, ValueKind::InverseDepth { .. }) => {
             format!("no camera: --intrinsics FX,FY,CX,CY or --camera FILE {adds}\n")
         }
         _ => format!("no camera: --preset SENSOR, --intrinsics FX,FY,CX,CY or --camera FILE {adds}\n"),
@@ -71,12 +71,12 @@ fn surfaces(curved: &Curved, detection: &Detection) -> String {
 }
 
 fn meaning(frame: &Frame) -> String {
-    match frame.sensor.measure {
-        Measure::Depth { metres } => format!("depth, 1 unit = {}", length(metres)),
-        Measure::InverseDepth { .. } => "inverse depth".into(),
-        Measure::Disparity if frame.encoding == "grey" => "no unit".into(),
-        Measure::Disparity if frame.encoding == "inverse-depth" => "inverse depth without a scale".into(),
-        Measure::Disparity => "disparity of an unknown rig".into(),
+    match frame.sensor.value_kind {
+        ValueKind::Depth { metres } => format!("depth, 1 unit = {}", length(metres)),
+        ValueKind::InverseDepth { .. } => "inverse depth".into(),
+        ValueKind::Disparity if frame.encoding == "grey" => "no unit".into(),
+        ValueKind::Disparity if frame.encoding == "inverse-depth" => "inverse depth without a scale".into(),
+        ValueKind::Disparity => "disparity of an unknown rig".into(),
     }
 }
 
@@ -107,10 +107,10 @@ pub(crate) fn table(report: &Report<'_>, most: usize) -> String {
         return String::new();
     }
     let shown = &planes[..planes.len().min(most)];
-    let measure = report.frame.sensor.measure;
-    let row: fn(&Plane, Measure) -> Vec<String> = if report.is_metric() { metric_row } else { map_row };
+    let value_kind = report.frame.sensor.value_kind;
+    let row: fn(&Plane, ValueKind) -> Vec<String> = if report.is_metric() { metric_row } else { map_row };
     let mut rows = vec![if report.is_metric() { metric_heading() } else { map_heading() }];
-    rows.extend(shown.iter().map(|plane| row(plane, measure)));
+    rows.extend(shown.iter().map(|plane| row(plane, value_kind)));
     let mut text = aligned(&vec![Align::Right; rows[0].len()], &rows);
     if shown.len() < planes.len() {
         let hidden = planes.len() - shown.len();
@@ -136,7 +136,7 @@ fn map_heading() -> Vec<String> {
     row(["plane", "pixels", "share", "depth", "mean value", "per column", "per row", "rms", "columns", "rows"])
 }
 
-fn metric_row(plane: &Plane, measure: Measure) -> Vec<String> {
+fn metric_row(plane: &Plane, value_kind: ValueKind) -> Vec<String> {
     let middle = plane.metric.map_or(unknown(6), |metric| {
         let mut cells = vec![format!("{:.3} m", metric.plane.distance)];
         cells.extend(metric.plane.normal.map(direction));
@@ -144,22 +144,22 @@ fn metric_row(plane: &Plane, measure: Measure) -> Vec<String> {
         cells.push(metric.area_m2.map_or("-".into(), |area| format!("{area:.3} m2")));
         cells
     });
-    assemble(plane, measure, middle)
+    assemble(plane, value_kind, middle)
 }
 
-fn map_row(plane: &Plane, measure: Measure) -> Vec<String> {
+fn map_row(plane: &Plane, value_kind: ValueKind) -> Vec<String> {
     let middle = plane.fit.map_or(unknown(4), |fit| {
         let [u, v] = plane.centroid;
         let mean = fit.gradient[0] * u + fit.gradient[1] * v + fit.offset;
         [mean, fit.gradient[0], fit.gradient[1], fit.rms].map(significant).to_vec()
     });
-    assemble(plane, measure, middle)
+    assemble(plane, value_kind, middle)
 }
 
-fn assemble(plane: &Plane, measure: Measure, middle: Vec<String>) -> Vec<String> {
+fn assemble(plane: &Plane, value_kind: ValueKind, middle: Vec<String>) -> Vec<String> {
     let pixels = plane.bounding_box;
     let mut cells = vec![plane.label.to_string(), plane.pixel_count.to_string(), percent(plane.share_of_valid)];
-    cells.push(depth_m(plane, measure).map_or("-".into(), |depth| format!("{depth:.3} m")));
+    cells.push(depth_m(plane, value_kind).map_or("-".into(), |depth| format!("{depth:.3} m")));
     cells.extend(middle);
     cells.push(format!("{}..{}", pixels.u_min, pixels.u_max));
     cells.push(format!("{}..{}", pixels.v_min, pixels.v_max));
@@ -200,7 +200,7 @@ const MANY_PLANES: usize = 200;
 
 /// A parameter in map units means another length in each encoding; says so where that matters.
 fn units_advice(report: &Report<'_>) -> Vec<String> {
-    let Measure::Depth { metres } = report.frame.sensor.measure else { return Vec::new() };
+    let ValueKind::Depth { metres } = report.frame.sensor.value_kind else { return Vec::new() };
     let detection = report.detection;
     let doubtful = detection.labelled_share() < 0.25 || detection.planes.len() > MANY_PLANES;
     let mut notes = Vec::new();

@@ -97,9 +97,10 @@ fn every_parameter_is_listed_and_is_a_flag() {
         let out = bench.run(&["params", method.name]).ok();
         for param in method.params {
             let flag = format!("--{}", param.name.replace('_', "-"));
-            let line = out.lines().find(|line| line.starts_with(&format!("{flag} "))).unwrap();
+            let line = out.lines().find(|line| line.split([' ', ',']).next() == Some(&flag)).unwrap();
             assert!(line.contains(&param.default.to_string()) && line.contains(param.meaning), "{line}");
             assert!(line.contains(param.source.unwrap_or("ours")), "{line}");
+            assert!(param.alias.is_none_or(|alias| line.contains(&format!(", --{alias} "))), "{line}");
             let shown = help.contains(&format!("{flag} <NUMBER>"));
             assert_eq!(shown, defaults.contains(&param.name), "{flag}\n{help}");
         }
@@ -201,9 +202,12 @@ fn help_shows_the_default_methods_parameters_and_takes_those_of_all() {
     let help = bench.run(&["detect", "--help"]).ok();
     assert!(!help.contains("--theta") && !help.contains("ngaf:"), "{help}");
     let short = bench.run(&["detect", "-h"]).ok();
-    for flag in ["--preset", "--intrinsics", "--camera", "--encoding", "--scale", "--labels", "--out-dir", "--min "] {
+    for flag in
+        ["--preset", "--intrinsics", "--camera", "--encoding", "--scale", "--labels", "--out-dir", "--min-pixels"]
+    {
         assert!(short.contains(flag), "{flag}\n{short}");
     }
+    assert!(short.contains("[pixels, default 100; or --min]"), "{short}");
     bench.run(&["detect", "map.pgm", "--method", "ngaf", "--theta", "3"]).ok();
     let man = bench.run(&["man", "--out-dir", "m"]).ok();
     assert!(man.contains("pages in m"));

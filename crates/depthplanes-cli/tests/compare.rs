@@ -50,7 +50,8 @@ fn scores_of_a_file_need_a_truth_of_its_size() {
 fn a_parameter_goes_to_the_methods_that_have_it() {
     let bench = Bench::new("compare_parameter");
     let count = |least: &str| {
-        let out = bench.run(&["compare", SCENE, "--methods", "planar,normals", "--min", least, "--repeat", "1"]).ok();
+        let out =
+            bench.run(&["compare", SCENE, "--methods", "planar,normals", "--min-pixels", least, "--repeat", "1"]).ok();
         out.lines().skip(2).map(|line| line.split_whitespace().nth(1).unwrap().to_string()).collect::<Vec<_>>()
     };
     assert_eq!(count("1000000"), ["0", "0"]);

@@ -40,12 +40,12 @@ fn with_a_camera_the_table_is_in_metres() {
 #[test]
 fn json_of_one_map_is_one_document() {
     let bench = Bench::with_map("json");
-    let record = json(&bench.run(&["detect", "map.pgm", "--json", "--min", "10"]).ok());
+    let record = json(&bench.run(&["detect", "map.pgm", "--json", "--min-pixels", "10"]).ok());
     assert_eq!(record["schema"], "depthplanes.planes/1");
     assert_eq!(record["source"], "map.pgm");
     assert_eq!(record["method"], "planar");
     assert_eq!(record["parameters"]["inlier-threshold"], 4.0);
-    assert_eq!(record["parameters"]["min"], 10);
+    assert_eq!(record["parameters"]["min-pixels"], 10);
     assert_eq!(record["valid_pixels"], 32 * 24 - 16);
     assert_eq!(record["planes"].as_array().unwrap().len(), 2);
     assert_eq!(record["planes"][0]["pixel_count"], 384);
@@ -56,10 +56,31 @@ fn json_of_one_map_is_one_document() {
 fn the_papers_method_is_there_by_its_name() {
     let bench = Bench::with_map("by_name");
     let words = ["detect", "map.pgm", "--method", "ngaf"];
-    assert!(bench.run(&words).ok().contains("\nngaf (theta 1, min 32, window 0): 2 planes on 100.0 %"));
-    let record = json(&bench.run(&[&words[..], &["--json", "--theta", "2", "--min", "10"]].concat()).ok());
+    assert!(bench.run(&words).ok().contains("\nngaf (theta 1, min-pixels 32, window 0): 2 planes on 100.0 %"));
+    let record = json(&bench.run(&[&words[..], &["--json", "--theta", "2", "--min-pixels", "10"]].concat()).ok());
     assert_eq!(record["method"], "ngaf");
-    assert_eq!((&record["parameters"]["theta"], &record["parameters"]["min"]), (&2.0.into(), &10.into()));
+    assert_eq!((&record["parameters"]["theta"], &record["parameters"]["min-pixels"]), (&2.0.into(), &10.into()));
+}
+
+#[test]
+fn the_papers_word_for_a_parameter_is_a_flag_and_records_have_its_name() {
+    let bench = Bench::with_map("alias");
+    let of = |words: &[&str]| bench.run(&[&["detect", "map.pgm", "--json"][..], words].concat());
+    for method in ["planar", "ngaf", "ransac"] {
+        let by_alias = of(&["--method", method, "--min", "10"]).ok();
+        assert_eq!(json(&by_alias)["parameters"]["min-pixels"], 10);
+        assert_eq!(by_alias, of(&["--method", method, "--min-pixels", "10"]).ok());
+    }
+    assert!(of(&["--min", "1.5"]).fails(2).contains("min-pixels"));
+    assert!(of(&["--min", "1", "--min-pixels", "2"]).fails(2).contains("--min-pixels"));
+    let out = bench.run(&["explain", "map.pgm", "--at", "3,4", "--min", "500"]).ok();
+    assert!(out.contains("min-pixels = 500 asks for more") && out.contains("Try --min-pixels"), "{out}");
+    assert!(
+        bench
+            .run(&["compare", "map.pgm", "--methods", "planar,ngaf", "--min", "10", "--repeat", "1"])
+            .ok()
+            .contains("ngaf")
+    );
 }
 
 #[test]
@@ -274,9 +295,9 @@ fn disparities_with_a_rig_become_metric() {
 #[test]
 fn where_no_plane_is_found_it_says_what_to_try() {
     let bench = Bench::with_map("no_plane");
-    let ran = bench.run(&["detect", "map.pgm", "--min", "100000"]);
+    let ran = bench.run(&["detect", "map.pgm", "--min-pixels", "100000"]);
     assert!(
-        ran.err.contains("no plane found by planar (min 100000), noise estimated; `depthplanes params planar`"),
+        ran.err.contains("no plane found by planar (min-pixels 100000), noise estimated; `depthplanes params planar`"),
         "{ran:?}"
     );
     assert!(ran.ok().contains("0 planes"));

@@ -9,12 +9,12 @@ use support::Bench;
 #[test]
 fn the_document_has_the_verdict_and_what_was_tried() {
     let bench = Bench::with_map("explain_json");
-    let out = bench.run(&["explain", "map.pgm", "--at", "3,4", "--min", "500", "--json"]).ok();
+    let out = bench.run(&["explain", "map.pgm", "--at", "3,4", "--min-pixels", "500", "--json"]).ok();
     let record: Value = serde_json::from_str(&out).unwrap();
     assert_eq!((&record["schema"], &record["at"]), (&"depthplanes.explain/1".into(), &serde_json::json!([3, 4])));
     assert_eq!(record["verdict"]["kind"], "small");
-    let flag = record["suggestions"][0]["parameters"]["min"].as_f64().unwrap().to_string();
-    let after = bench.run(&["explain", "map.pgm", "--at", "3,4", "--min", &flag]).ok();
+    let flag = record["suggestions"][0]["parameters"]["min-pixels"].as_f64().unwrap().to_string();
+    let after = bench.run(&["explain", "map.pgm", "--at", "3,4", "--min-pixels", &flag]).ok();
     assert!(after.contains("It belongs to plane"), "{after}");
 }
 

@@ -35,7 +35,7 @@ fn the_boxes_of_the_readme_are_what_is_found_of_a_recorded_frame() {
     for (picture, command, given) in [
         ("boxes.png", "detect", &["--overlay", "boxes.png"][..]),
         // No plane is that large, so that the grey map remains.
-        ("boxes-depth.png", "detect", &["--overlay", "boxes-depth.png", "--min", "1000000"]),
+        ("boxes-depth.png", "detect", &["--overlay", "boxes-depth.png", "--min-pixels", "1000000"]),
         ("compare.png", "compare", &["--repeat", "1", "--picture", "compare.png", "--methods", COMPARED]),
     ] {
         bench.run(&[&[command], &map[..], given].concat()).ok();
@@ -48,14 +48,14 @@ fn the_room_of_the_readme_is_the_demos() {
     let bench = Bench::new("picture_of_the_room");
     bench.run(&["demo", "--out-dir", "demo"]).ok();
     check("room.png", &bench.read("demo/overlay.png"));
-    bench.run(&["detect", "demo/depth.png", "--min", "1000000", "--overlay", "depth.png"]).ok();
+    bench.run(&["detect", "demo/depth.png", "--min-pixels", "1000000", "--overlay", "depth.png"]).ok();
     check("room-depth.png", &bench.read("depth.png"));
 }
 
 /// The scene of docs/ngaf.md and the parameters used there.
 const SCENE: &str = "boxes:seed=3,sensor=kinect_white,size=320x240";
 const WINDOW: u32 = 5;
-const PARAMETERS: [(&str, f64); 3] = [("theta", 20.0), ("min", 64.0), ("window", WINDOW as f64)];
+const PARAMETERS: [(&str, f64); 3] = [("theta", 20.0), ("min-pixels", 64.0), ("window", WINDOW as f64)];
 
 #[test]
 fn the_stages_of_ngaf_look_as_the_page_shows_them() {
@@ -92,7 +92,7 @@ fn the_stages_of_ngaf_look_as_the_page_shows_them() {
 fn the_room_of_the_page_on_planar_is_what_the_methods_find() {
     let bench = Bench::new("pictures_of_planar");
     let planar: &[&str] = &[];
-    let ngaf: &[&str] = &["--method", "ngaf", "--theta", "20", "--min", "100"];
+    let ngaf: &[&str] = &["--method", "ngaf", "--theta", "20", "--min-pixels", "100"];
     for (method, picture) in [(planar, "planar-room.png"), (ngaf, "planar-room-ngaf.png")] {
         let given = ["detect", "scene:room:seed=2,sensor=azure,size=480x360", "--overlay", picture];
         bench.run(&[&given, method].concat()).ok();

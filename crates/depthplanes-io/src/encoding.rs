@@ -4,7 +4,7 @@
 //! packs bits (`kinect-sdk`, `sun-rgbd`) or spreads bytes over channels (`packed.rs`), and its [`Meaning`]. Integer maps
 //! otherwise keep the numbers that are in the file, because the paper's threshold counts grey levels.
 
-use depthplanes::Measure;
+use depthplanes::ValueKind;
 
 use crate::error::{Error, Result};
 use crate::formats::{self, Image};
@@ -25,7 +25,7 @@ pub struct Given {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meaning {
     /// Depth, inverse depth or disparity.
-    pub measure: Measure,
+    pub value_kind: ValueKind,
     /// Smallest and largest valid value, map units, where the encoding limits them.
     pub valid_range: Option<(f64, f64)>,
 }
@@ -246,7 +246,9 @@ pub const ENCODINGS: &[Encoding] = &[
         about: "grey levels of unknown unit: planes in pixels, no metres",
         unit: "grey level",
         scale: "",
-        apply: |_, given| no_scale("grey", given).map(|()| Meaning { measure: Measure::Disparity, valid_range: None }),
+        apply: |_, given| {
+            no_scale("grey", given).map(|()| Meaning { value_kind: ValueKind::Disparity, valid_range: None })
+        },
         ..DEPTH
     },
 ];
@@ -269,30 +271,30 @@ pub fn stated_by_file(image: &Image) -> Option<&'static Encoding> {
 
 /// Depth, negative floats missing.
 fn depth(image: &Image, units_per_metre: f64) -> Result<Meaning> {
-    let measure = Measure::depth(1.0 / positive_scale(units_per_metre)?)?;
-    Ok(Meaning { measure, valid_range: float_range(image, 0.0) })
+    let value_kind = ValueKind::depth(1.0 / positive_scale(units_per_metre)?)?;
+    Ok(Meaning { value_kind, valid_range: float_range(image, 0.0) })
 }
 
 /// Disparity, metric if the rig is known.
 fn disparity(image: &Image, given: &Given, units_per_pixel: f64) -> Result<Meaning> {
     let pixels_per_unit = 1.0 / positive_scale(units_per_pixel)?;
-    let (measure, lowest) = match given.stereo {
+    let (value_kind, lowest) = match given.stereo {
         Some(rig) => {
-            let measure = Measure::stereo(pixels_per_unit, rig.focal_px, rig.baseline_m, rig.doffs_px)?;
-            (measure, -rig.doffs_px * units_per_pixel)
+            let value_kind = ValueKind::stereo(pixels_per_unit, rig.focal_px, rig.baseline_m, rig.doffs_px)?;
+            (value_kind, -rig.doffs_px * units_per_pixel)
         }
-        None => (Measure::Disparity, 0.0),
+        None => (ValueKind::Disparity, 0.0),
     };
-    Ok(Meaning { measure, valid_range: float_range(image, lowest) })
+    Ok(Meaning { value_kind, valid_range: float_range(image, lowest) })
 }
 
 /// Relative, as networks give it, unless the scale is stated.
 fn inverse_depth(image: &mut Image, given: &Given) -> Result<Meaning> {
-    let measure = match given.scale {
-        Some(scale) => Measure::InverseDepth { slope: 1.0 / positive_scale(scale)?, offset: 0.0 },
-        None => Measure::Disparity,
+    let value_kind = match given.scale {
+        Some(scale) => ValueKind::InverseDepth { slope: 1.0 / positive_scale(scale)?, offset: 0.0 },
+        None => ValueKind::Disparity,
     };
-    Ok(Meaning { measure, valid_range: float_range(image, 0.0) })
+    Ok(Meaning { value_kind, valid_range: float_range(image, 0.0) })
 }
 
 fn middlebury(image: &mut Image, given: &Given) -> Result<Meaning> {
@@ -323,8 +325,8 @@ fn kinect_raw(image: &mut Image, given: &Given) -> Result<Meaning> {
         values.iter_mut().for_each(|value| *value = value.swap_bytes());
         image.warnings.push("the bytes were swapped: only so are all values at most 2047".to_string());
     }
-    let measure = Measure::InverseDepth { slope: -0.0030711016, offset: 3.3309495161 };
-    Ok(Meaning { measure, valid_range: Some((1.0, 1084.0)) })
+    let value_kind = ValueKind::InverseDepth { slope: -0.0030711016, offset: 3.3309495161 };
+    Ok(Meaning { value_kind, valid_range: Some((1.0, 1084.0)) })
 }
 
 /// 16-bit millimetres behind a packing of bits.
@@ -350,7 +352,7 @@ fn carla(image: &mut Image, given: &Given) -> Result<Meaning> {
     const LARGEST: f64 = 16_777_215.0;
     packed::unpack("rgb24-carla", image, Packing::ThreeBytes { high_first: false })?;
     let far_m = positive_scale(given.scale.unwrap_or(1000.0))?;
-    Ok(Meaning { measure: Measure::depth(far_m / LARGEST)?, valid_range: Some((0.0, 0.999 * LARGEST)) })
+    Ok(Meaning { value_kind: ValueKind::depth(far_m / LARGEST)?, valid_range: Some((0.0, 0.999 * LARGEST)) })
 }
 
 /// `z = A / (value - B)` (compressed_depth_image_transport), 0 = missing.
@@ -360,7 +362,7 @@ fn quantised(image: &mut Image, given: &Given) -> Result<Meaning> {
         let accepted = "a compressedDepth payload whose header states A and B";
         return Err(Error::parameter("--encoding", "compressed-depth", accepted));
     };
-    Ok(Meaning { measure: formats::quantised_inverse_depth(a, b)?, valid_range: None })
+    Ok(Meaning { value_kind: formats::quantised_inverse_depth(a, b)?, valid_range: None })
 }
 
 fn sixteen_bits<'a>(name: &'static str, image: &'a mut Image) -> Result<&'a mut Vec<u16>> {

@@ -42,7 +42,7 @@ pub struct Summary {
     pub missing: f64,
     /// Smallest, middle and largest valid value, map units; `None` if all are missing.
     pub range: Option<[f64; 3]>,
-    /// The same in metres, in the same order, where the measure is metric.
+    /// The same in metres, in the same order, where the value kind is metric.
     pub range_m: Option<[f64; 3]>,
     /// Number of different valid values.
     pub distinct: usize,
@@ -88,7 +88,7 @@ pub fn summary(frame: &Frame, bins: usize) -> Result<Summary> {
 }
 
 fn metres(frame: &Frame, range: [f64; 3]) -> Option<[f64; 3]> {
-    let depth = |value| frame.sensor.measure.depth_m(value);
+    let depth = |value| frame.sensor.value_kind.depth_m(value);
     Some([depth(range[0])?, depth(range[1])?, depth(range[2])?])
 }
 

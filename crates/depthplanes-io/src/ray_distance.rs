@@ -3,7 +3,7 @@
 //! Simulators, laser scanners and some time-of-flight drivers deliver how far a point is from the camera, r. Its depth is
 //! `z = r / sqrt(x^2 + y^2 + 1)` for the ray (x, y, 1) of the pixel.
 
-use depthplanes::{Measure, Sensor};
+use depthplanes::{Sensor, ValueKind};
 
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Pixels};
@@ -14,7 +14,7 @@ use crate::frame::{Frame, Pixels};
 /// [`Error::Parameter`] unless the frame's values are lengths and its camera is known.
 pub(crate) fn to_depth(frame: &mut Frame) -> Result<()> {
     let refused = |given, accepted| Err(Error::parameter("--ray-distance", given, accepted));
-    let Measure::Depth { .. } = frame.sensor.measure else {
+    let ValueKind::Depth { .. } = frame.sensor.value_kind else {
         return refused("for disparity", "a map of distances; --encoding states its unit");
     };
     if frame.sensor.intrinsics.is_none() {

@@ -28,7 +28,7 @@ use crate::traps::traps;
 /// let pgm = b"P2 3 1 65535 5000 0 10000";
 /// let options = ReadOptions { encoding: Some("tum".into()), ..Default::default() };
 /// let frame = depthplanes_io::decode(pgm, "doc.pgm", &options)?;
-/// assert_eq!(frame.sensor.measure.depth_m(10_000.0), Some(2.0));
+/// assert_eq!(frame.sensor.value_kind.depth_m(10_000.0), Some(2.0));
 /// # Ok::<(), depthplanes_io::Error>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -141,7 +141,7 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
         pixels: image.pixels,
         valid_range: options.valid_range.or(meaning.valid_range),
         sensor: Sensor::default()
-            .measure(meaning.measure)
+            .value_kind(meaning.value_kind)
             .intrinsics(camera.intrinsics)
             .distortion(camera.distortion)
             .noise(noise(options.noise, of_preset(|preset| preset.noise), &meaning)?)
@@ -220,7 +220,7 @@ fn missing(
     if let Some(value) = known.filter(|value| storable(&image.pixels, *value)) {
         return Ok(Some(value));
     }
-    let odd = not_measured(&image.pixels, meaning.measure).filter(|_| options.valid_range.is_none());
+    let odd = not_measured(&image.pixels, meaning.value_kind).filter(|_| options.valid_range.is_none());
     Ok(odd.map(|(value, note)| {
         image.warnings.push(note);
         value
@@ -249,7 +249,7 @@ fn swap_bytes(image: &mut Image) -> Result<()> {
 /// A part of the user's noise, which must suit the map, or the preset's.
 fn noise(given: Option<SensorNoise>, of_preset: Option<SensorNoise>, meaning: &Meaning) -> Result<Option<SensorNoise>> {
     let Some(noise) = given else { return Ok(of_preset) };
-    if NoiseModel::new(meaning.measure, noise, 0.0).is_none() {
+    if NoiseModel::new(meaning.value_kind, noise, 0.0).is_none() {
         let accepted = "maps in depth, or in disparity of a known rig (--focal, --baseline)";
         return Err(Error::parameter("--noise-table", "for depth and the map is not", accepted));
     }

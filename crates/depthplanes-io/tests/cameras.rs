@@ -565,10 +565,10 @@ fn binning_and_region_of_interest_are_applied() {
 fn the_unit_of_a_camera_file_is_that_of_a_map_whose_unit_is_a_guess() {
     let orb = SPECIMENS.iter().find(|(form, ..)| *form == "orb-slam").unwrap().1;
     let frame = framed(orb, (640, 480), |_| ()).unwrap();
-    assert_eq!(frame.sensor.measure.depth_m(5000.0), Some(1.0));
+    assert_eq!(frame.sensor.value_kind.depth_m(5000.0), Some(1.0));
     assert!(frame.warnings.iter().any(|note| note.contains("--scale")));
     let frame = framed(orb, (640, 480), |options| options.encoding = Some("millimetre".into())).unwrap();
-    assert_eq!(frame.sensor.measure.depth_m(5000.0), Some(5.0));
+    assert_eq!(frame.sensor.value_kind.depth_m(5000.0), Some(5.0));
 }
 
 /// The camera [`VGA`] in JSON, with more beside it.

@@ -3,7 +3,7 @@
 mod common;
 
 use common::*;
-use depthplanes::Measure;
+use depthplanes::ValueKind;
 use depthplanes_io::encoding::{ENCODINGS, Stereo};
 use depthplanes_io::presets::SENSOR_PRESETS;
 use depthplanes_io::{Error, Frame, Pixels, ReadOptions, decode, encoding, inspect};
@@ -21,7 +21,7 @@ fn read(values: &[u16], options: &ReadOptions) -> Frame {
 }
 
 fn depth_m(frame: &Frame, value: f64) -> f64 {
-    frame.sensor.measure.depth_m(value).unwrap()
+    frame.sensor.value_kind.depth_m(value).unwrap()
 }
 
 const RIG: Stereo = Stereo { focal_px: 500.0, baseline_m: 0.2, doffs_px: 0.0 };
@@ -64,7 +64,7 @@ fn raw_kinect_has_its_formula_its_missing_value_and_its_end() {
 
 #[test]
 fn disparity_is_metric_with_a_rig_only() {
-    assert_eq!(read(&[2560, 1], &named("kitti")).sensor.measure, Measure::Disparity);
+    assert_eq!(read(&[2560, 1], &named("kitti")).sensor.value_kind, ValueKind::Disparity);
     let kitti = read(&[2560, 1], &ReadOptions { stereo: Some(RIG), ..named("kitti") });
     assert!((depth_m(&kitti, 2560.0) - 10.0).abs() < 1e-9);
     let unscaled = ReadOptions { stereo: Some(RIG), ..named("middlebury") };

@@ -22,7 +22,8 @@ fn no_pixel_of_them_is_both_curved_and_in_a_plane() {
     for frame in frames() {
         for sensor in sensors(&frame) {
             for (scale, threshold) in [(1.0, 3.0), (0.0237, 0.582), (0.01, 0.5), (0.1, 10.0), (100.0, 100.0)] {
-                let planar = Planar::default().min(3).noise_scale(scale).inlier_threshold(threshold).lateral_noise(1.0);
+                let planar =
+                    Planar::default().min_pixels(3).noise_scale(scale).inlier_threshold(threshold).lateral_noise(1.0);
                 let mut detector = Detector::new(planar).unwrap().sensor(sensor).curved(true);
                 let found = detector.detect(frame.view().unwrap()).unwrap();
                 let curved = &found.curved.as_ref().unwrap().labels;
@@ -38,8 +39,8 @@ fn every_method_counts_its_labels_on_them() {
         for (sensor, method) in
             sensors(&frame).into_iter().flat_map(|sensor| METHODS.iter().map(move |row| (sensor, row)))
         {
-            for min in [0.0, 30.0] {
-                let method = method.with(&[("min", min)]).unwrap();
+            for least in [0.0, 30.0] {
+                let method = method.with(&[("min-pixels", least)]).unwrap();
                 let mut detector = Detector::new(method).unwrap().sensor(sensor);
                 let found = detector.detect(frame.view().unwrap()).unwrap();
                 let mut counts = vec![0; found.planes.len() + 1];

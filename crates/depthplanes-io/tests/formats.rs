@@ -219,11 +219,11 @@ fn raw_samples_need_their_size() {
 #[test]
 fn the_header_of_a_float_compressed_depth_gives_its_measure() {
     let bytes = [config_header(200.0, -30.0), rvl(7, 5, &depth())].concat();
-    let measure = depthplanes_io::formats::inverse_depth_measure(&bytes).unwrap();
+    let value_kind = depthplanes_io::formats::inverse_depth_value_kind(&bytes).unwrap();
     // z = A / (v - B)
-    let z = measure.depth_m(70.0).unwrap();
+    let z = value_kind.depth_m(70.0).unwrap();
     assert!((z - 2.0).abs() < 1e-12);
-    assert!(depthplanes_io::formats::inverse_depth_measure(&config_header(0.0, 0.0)).is_err());
+    assert!(depthplanes_io::formats::inverse_depth_value_kind(&config_header(0.0, 0.0)).is_err());
 }
 
 #[cfg(feature = "tiff")]
@@ -386,7 +386,7 @@ fn compressed_depth_is_inverse_depth_where_its_header_says_so() {
         assert_eq!(frame.encoding, "compressed-depth");
         assert!(frame.warnings[0].contains("--encoding millimetre"), "{:?}", frame.warnings);
         for (value, depth) in values.iter().zip(depths) {
-            let read = frame.sensor.measure.depth_m(f64::from(*value)).unwrap();
+            let read = frame.sensor.value_kind.depth_m(f64::from(*value)).unwrap();
             // The value is cut to a whole number, by less than 1.
             assert!((1.0 / read - 1.0 / depth).abs() < 1.0 / a, "{read} is not {depth}");
         }

@@ -84,7 +84,7 @@ fn every_presets_noise_suits_its_encoding() {
         assert_eq!(sensor.noise.is_some(), preset.noise.is_some(), "{}", preset.name);
         assert_eq!(sensor.smooth_noise.is_some(), preset.smooth_noise.is_some(), "{}", preset.name);
         for noise in sensor.noise.into_iter().chain(sensor.smooth_noise) {
-            let model = NoiseModel::new(sensor.measure, noise, 1.0).unwrap_or_else(|| panic!("{}", preset.name));
+            let model = NoiseModel::new(sensor.value_kind, noise, 1.0).unwrap_or_else(|| panic!("{}", preset.name));
             let at_2_m = model.depth_sigma_m(2.0).unwrap();
             assert!((1e-4..0.02).contains(&at_2_m), "{}: {at_2_m} m at 2 m", preset.name);
         }

@@ -4,7 +4,7 @@ mod support;
 
 use depthplanes::detection::Curved;
 use depthplanes::outline::{Outliner, Outlines};
-use depthplanes::{Coplanar, Detection, Detector, Measure, Ngaf, Part, Sensor};
+use depthplanes::{Coplanar, Detection, Detector, Ngaf, Part, Sensor, ValueKind};
 use depthplanes_io::outputs::{self, OUTPUTS, Output, OutputError, Report, Spread, Times};
 use depthplanes_io::{Frame, Pixels};
 use std::path::{Path, PathBuf};
@@ -94,7 +94,7 @@ fn near_is_brighter_than_far_and_missing_is_darkest() {
 fn overlays_of_disparity_and_of_empty_and_of_flat_maps_are_drawn() {
     let mut frame = frame();
     let detection = detection();
-    frame.sensor = Sensor::default().measure(Measure::Disparity);
+    frame.sensor = Sensor::default().value_kind(ValueKind::Disparity);
     encode("overlay", "a.png", &Report { legend: true, ..report(&frame, &detection) });
     for value in [0, 700] {
         frame.pixels = depthplanes_io::Pixels::U16(vec![value; WIDTH * HEIGHT]);
@@ -121,7 +121,7 @@ fn planes_json_and_its_line_are_the_same_value() {
     assert!(!line.contains('\n'));
     assert_eq!(document, serde_json::from_str::<serde_json::Value>(&line).unwrap());
     assert_eq!(document["schema"], outputs::SCHEMA);
-    assert_eq!(document["parameters"], serde_json::json!({"theta": 1.5, "min": 32, "window": 0}));
+    assert_eq!(document["parameters"], serde_json::json!({"theta": 1.5, "min-pixels": 32, "window": 0}));
     assert_eq!(document["planes"].as_array().unwrap().len(), 3);
     assert!(document["planes"][2]["fit"].is_null());
     assert!(document.get("time_ms").is_none());
@@ -178,7 +178,7 @@ fn room() -> (Frame, Detection) {
     let scene =
         "room:seed=2,sensor=tof_white,size=160x120".parse::<depthplanes::scene::Spec>().unwrap().frame().unwrap();
     let depthplanes::scene::ScenePixels::U16(pixels) = &scene.pixels else { panic!("millimetres") };
-    let mut detector = Detector::new(Ngaf::default().theta(40.0).min(8)).unwrap().sensor(scene.sensor);
+    let mut detector = Detector::new(Ngaf::default().theta(40.0).min_pixels(8)).unwrap().sensor(scene.sensor);
     let found = detector.detect(scene.view()).unwrap().clone();
     let (width, height) = (scene.width, scene.height);
     (Frame { width, height, pixels: Pixels::U16(pixels.clone()), sensor: scene.sensor, ..frame() }, found)
@@ -223,7 +223,7 @@ fn a_mesh_of_exact_outlines_covers_the_area_of_each_plane_and_faces_the_camera()
             camera.fy = -camera.fy;
             frame.sensor.intrinsics = Some(camera);
             let Pixels::U16(pixels) = &frame.pixels else { unreachable!() };
-            let ngaf = Ngaf::default().theta(40.0).min(8);
+            let ngaf = Ngaf::default().theta(40.0).min_pixels(8);
             let mut detector = Detector::new(ngaf).unwrap().sensor(frame.sensor);
             let view = depthplanes::DepthView::new(pixels, frame.width, frame.height).unwrap();
             detection = detector.detect(view).unwrap().clone();
@@ -279,7 +279,7 @@ fn cloud_without_a_camera_says_what_is_missing() {
     frame.sensor.intrinsics = None;
     let error = (output("cloud").writers[0].encode)(&report(&frame, &detection)).unwrap_err();
     assert!(error.to_string().contains("--intrinsics"), "{error}");
-    frame.sensor.measure = Measure::Disparity;
+    frame.sensor.value_kind = ValueKind::Disparity;
     let error = (output("cloud").writers[0].encode)(&report(&frame, &detection)).unwrap_err();
     assert!(error.to_string().contains("--baseline"), "{error}");
     assert!(error.is_usage());

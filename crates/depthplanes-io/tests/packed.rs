@@ -15,7 +15,7 @@ fn named(encoding: &str, scale: Option<f64>) -> ReadOptions {
 }
 
 fn depths_m(frame: &Frame) -> Vec<f64> {
-    let depth = |value: f64| frame.sensor.measure.depth_m(value).unwrap_or(f64::NAN);
+    let depth = |value: f64| frame.sensor.value_kind.depth_m(value).unwrap_or(f64::NAN);
     match &frame.pixels {
         Pixels::U8(values) => values.iter().map(|value| depth(f64::from(*value))).collect(),
         Pixels::U16(values) => values.iter().map(|value| depth(f64::from(*value))).collect(),

@@ -127,7 +127,7 @@ fn float_disparity_with_its_calibration_becomes_metres() {
         let rig = camera.stereo.unwrap();
         let value = 20.0;
         let z = rig.baseline_m * rig.focal_px / (value + rig.doffs_px);
-        assert!((frame.sensor.measure.depth_m(value).unwrap() - z).abs() < 1e-12);
+        assert!((frame.sensor.value_kind.depth_m(value).unwrap() - z).abs() < 1e-12);
     }
 }
 

@@ -5,7 +5,7 @@ mod common;
 #[path = "common/room.rs"]
 mod room;
 
-use depthplanes::Measure;
+use depthplanes::ValueKind;
 use depthplanes_io::encoding::Stereo;
 use depthplanes_io::{Frame, Pixels, ReadOptions, Source, decode};
 use room::{CAMERA, ROOM, SIZE, check, depths_m, notes};
@@ -100,13 +100,13 @@ fn a_preset_never_overrides_what_the_file_says() {
     }
     // Counts that were saved as floats are the preset's.
     let frame = read(&floats(|_, depth| (5000.0 * depth).round()), &preset("tum-fr1"));
-    assert_eq!(frame.sensor.measure, Measure::Depth { metres: 1.0 / 5000.0 });
+    assert_eq!(frame.sensor.value_kind, ValueKind::Depth { metres: 1.0 / 5000.0 });
     assert_eq!(notes(&frame), "");
     let header = "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 8\nHEIGHT 8\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 64\nDATA ascii\n";
     let cloud = format!("{header}{}", "0 0 1.5\n".repeat(64));
     for of in ["kinect1", "tum-fr2", "azure-kinect"] {
         let frame = read(cloud.as_bytes(), &ReadOptions { preset: Some(of.into()), ..Default::default() });
-        assert_eq!((frame.encoding, frame.sensor.measure), ("metre", Measure::Depth { metres: 1.0 }), "{of}");
+        assert_eq!((frame.encoding, frame.sensor.value_kind), ("metre", ValueKind::Depth { metres: 1.0 }), "{of}");
     }
 }
 

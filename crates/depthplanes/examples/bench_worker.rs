@@ -1,7 +1,7 @@
 //! Measures stages of `ngaf` on one frame, told by another program when to do what, so that it can
 //! be interleaved with rivals in one run (`benchmarks/run.py`).
 //!
-//! `bench_worker WIDTH HEIGHT TYPE THETA MIN THREADS KERNEL FILE`: FILE holds raw little-endian
+//! `bench_worker WIDTH HEIGHT TYPE THETA MIN_PIXELS THREADS KERNEL FILE`: FILE holds raw little-endian
 //! pixels, TYPE is u8, u16 or f32, KERNEL is a kernel's name or `best`. Commands on stdin, one a
 //! line, answered by one line: `detect N` (nanoseconds of N times group + select + labels, after
 //! a warm-up), `copy N` (the same of a copy of the frame), `stages` (the three times of `detect`), `runs` (how many
@@ -17,21 +17,21 @@ struct Job {
     width: usize,
     height: usize,
     theta: f64,
-    min: u32,
+    min_pixels: u32,
     threads: usize,
     kernel: &'static Kernel,
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    let [width, height, kind, theta, min, threads, kernel, file] = &args[..] else {
-        return Err("usage: bench_worker WIDTH HEIGHT TYPE THETA MIN THREADS KERNEL FILE".into());
+    let [width, height, kind, theta, min_pixels, threads, kernel, file] = &args[..] else {
+        return Err("usage: bench_worker WIDTH HEIGHT TYPE THETA MIN_PIXELS THREADS KERNEL FILE".into());
     };
     let job = Job {
         width: width.parse()?,
         height: height.parse()?,
         theta: theta.parse()?,
-        min: min.parse()?,
+        min_pixels: min_pixels.parse()?,
         threads: threads.parse()?,
         kernel: match kernel.as_str() {
             "best" => depthplanes::internals::best(),
@@ -51,7 +51,7 @@ fn serve<T: Compiles>(job: &Job, pixels: Vec<T>) -> Result<(), Box<dyn std::erro
     let view = DepthView::new(&pixels, job.width, job.height)?;
     let rule = Connectivity::new(view.validity(), job.theta)?;
     let mut grouper = ConnectedComponents::with_kernel(job.kernel);
-    grouper.leave_out_singles(job.min >= 1);
+    grouper.leave_out_singles(job.min_pixels >= 1);
     let mut selection = Selection::default();
     let mut labels = Vec::new();
     let mut copy = pixels.clone();
@@ -60,7 +60,7 @@ fn serve<T: Compiles>(job: &Job, pixels: Vec<T>) -> Result<(), Box<dyn std::erro
         match line.split_once(' ').unwrap_or((&line, "")) {
             ("detect", times) => print_times(times, || {
                 let groups = grouper.group(black_box(&view), &rule, job.threads);
-                selection.select(groups, job.min)?;
+                selection.select(groups, job.min_pixels)?;
                 selection.paint(groups, &mut labels);
                 black_box(&labels);
                 Ok(())
@@ -74,7 +74,7 @@ fn serve<T: Compiles>(job: &Job, pixels: Vec<T>) -> Result<(), Box<dyn std::erro
                 let start = Instant::now();
                 let groups = grouper.group(black_box(&view), &rule, job.threads);
                 let grouped = start.elapsed();
-                selection.select(groups, job.min)?;
+                selection.select(groups, job.min_pixels)?;
                 let selected = start.elapsed();
                 selection.paint(groups, &mut labels);
                 println!("{:?} {:?} {:?}", grouped, selected - grouped, start.elapsed() - selected);

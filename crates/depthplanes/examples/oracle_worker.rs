@@ -10,7 +10,7 @@
 //! | pixel type | u32 | 1 = u8, 2 = u16, 4 = f32 |
 //! | width, height | u32 each | pixels |
 //! | threads | u32 | group on 1, 2 ... this many threads |
-//! | min | u32 | a plane has more pixels than this |
+//! | min_pixels | u32 | a plane has more pixels than this |
 //! | theta | f64 | map units |
 //! | pixels | width * height of the type | row by row, top row first |
 //!
@@ -38,7 +38,7 @@ struct Request {
     width: usize,
     height: usize,
     threads: u32,
-    min: u32,
+    min_pixels: u32,
     theta: f64,
 }
 
@@ -81,7 +81,7 @@ fn read_request(input: &mut impl Read) -> Result<Option<Request>, Box<dyn Error>
     let Some((fields, theta)) = header.split_last_chunk::<8>().filter(|_| header.len() == HEADER) else {
         return Err(format!("a header has {HEADER} bytes; the input ends after {}", header.len()).into());
     };
-    let [bytes_per_pixel, width, height, threads, min] = numbers(fields, u32::from_le_bytes)[..] else {
+    let [bytes_per_pixel, width, height, threads, min_pixels] = numbers(fields, u32::from_le_bytes)[..] else {
         unreachable!("20 bytes are 5 fields");
     };
     if ![1, 2, 4].contains(&bytes_per_pixel) {
@@ -95,7 +95,7 @@ fn read_request(input: &mut impl Read) -> Result<Option<Request>, Box<dyn Error>
     if !(1..=MAX_THREADS).contains(&threads) {
         return Err(format!("{threads} threads: 1 to {MAX_THREADS} are accepted").into());
     }
-    Ok(Some(Request { bytes_per_pixel, width, height, threads, min, theta: f64::from_le_bytes(*theta) }))
+    Ok(Some(Request { bytes_per_pixel, width, height, threads, min_pixels, theta: f64::from_le_bytes(*theta) }))
 }
 
 /// The request's pixels; memory grows with what arrives, not with what the header promises.
@@ -121,7 +121,7 @@ fn label<T: Compiles>(lanes: &mut [Lane], request: &Request, pixels: &[T]) -> de
     for Lane { grouper, selection } in lanes {
         for threads in 1..=request.threads {
             let groups = grouper.group(&map, &rule, threads as usize);
-            selection.select(groups, request.min)?;
+            selection.select(groups, request.min_pixels)?;
             let mut labels = vec![u16::MAX; map.area()]; // so that a pixel that is left out shows
             selection.paint(groups, &mut labels);
             images.push(labels);

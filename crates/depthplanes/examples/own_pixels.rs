@@ -1,6 +1,6 @@
 //! Planes of pixels that a program has already: a rectangle of a larger buffer, with a mark for missing ones.
 
-use depthplanes::{DepthView, Detector, Intrinsics, Measure, Sensor};
+use depthplanes::{DepthView, Detector, Intrinsics, Sensor, ValueKind};
 
 pub(crate) fn main() -> depthplanes::Result<()> {
     // 160 x 120 pixels of depth in metres, in a buffer of 200 a row; a driver writes -1 for missing ones.
@@ -14,8 +14,9 @@ pub(crate) fn main() -> depthplanes::Result<()> {
         }
     }
     let map = DepthView::with_stride(&buffer, width, height, stride)?;
-    let sensor =
-        Sensor::default().measure(Measure::depth(1.0)?).intrinsics(Some(Intrinsics::new(145.0, 145.0, 79.5, 59.5)?));
+    let sensor = Sensor::default()
+        .value_kind(ValueKind::depth(1.0)?)
+        .intrinsics(Some(Intrinsics::new(145.0, 145.0, 79.5, 59.5)?));
     let mut detector = Detector::default().sensor(sensor);
     let found = detector.detect(map)?;
     for plane in &found.planes {

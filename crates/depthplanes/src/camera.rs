@@ -69,17 +69,18 @@ impl Intrinsics {
     }
 }
 
-/// What the numbers in a map mean.
+/// What the numbers in a map mean: depth, inverse depth or disparity, and its unit. All but disparity of an unknown rig are
+/// metric.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Measure {
+pub enum ValueKind {
     /// Depth along the optical axis: `z = metres * value`.
     Depth {
         /// Metres per map unit.
         metres: f64,
     },
     /// Affine in inverse depth: `1/z = slope * value + offset`, in 1/m. Disparity of a known rig
-    /// ([`Measure::stereo`]), raw Kinect.
+    /// ([`ValueKind::stereo`]), raw Kinect.
     InverseDepth {
         /// 1/m per map unit.
         slope: f64,
@@ -91,13 +92,13 @@ pub enum Measure {
     Disparity,
 }
 
-impl Measure {
+impl ValueKind {
     /// Depth with a unit.
     ///
     /// # Errors
     /// [`Error::Camera`] unless `metres` per unit lies within [`METRES_PER_UNIT`].
     pub fn depth(metres: f64) -> Result<Self> {
-        Measure::Depth { metres }.checked()
+        ValueKind::Depth { metres }.checked()
     }
 
     /// Disparity of a rectified pair (paper, eq. 6: `z = f T / |xL - xR|`; with the Middlebury
@@ -116,7 +117,7 @@ impl Measure {
             return Err(Error::Camera { name: "doffs", given: doffs_px, accepted: "a finite number of pixels" });
         }
         let f_t = focal_px * baseline_m;
-        Measure::InverseDepth { slope: pixels_per_unit / f_t, offset: doffs_px / f_t }.checked()
+        ValueKind::InverseDepth { slope: pixels_per_unit / f_t, offset: doffs_px / f_t }.checked()
     }
 
     fn checked(self) -> Result<Self> {
@@ -130,48 +131,48 @@ impl Measure {
     /// [`Error::Camera`] as of the constructors.
     pub(crate) fn check(&self) -> Result<()> {
         match *self {
-            Measure::Depth { metres } => {
+            ValueKind::Depth { metres } => {
                 let accepted = "a number of metres from 1e-12 to 1e12";
                 within("metres per map unit", metres, METRES_PER_UNIT.contains(&metres), accepted)
             }
-            Measure::InverseDepth { slope, offset } => {
+            ValueKind::InverseDepth { slope, offset } => {
                 let accepted = "a number of 1/m per map unit, from 1e-15 to 1e15 or from -1e15 to -1e-15";
                 within("slope", slope, SLOPE_PER_M.contains(&slope.abs()), accepted)?;
                 within("offset", offset, offset.abs() <= MAX_OFFSET_PER_M, "a number of 1/m from -1e15 to 1e15")
             }
-            Measure::Disparity => Ok(()),
+            ValueKind::Disparity => Ok(()),
         }
     }
 
-    /// Inverse depth in 1/m of a map value; `None` where the measure is unknown or the value lies
-    /// at or behind infinity.
+    /// Inverse depth in 1/m of a map value; `None` of [`ValueKind::Disparity`], whose factors are unknown, and of a
+    /// value that lies at or behind infinity.
     #[inline]
     pub fn inverse_depth(&self, value: f64) -> Option<f64> {
         let q = match *self {
-            Measure::Depth { metres } => 1.0 / (metres * value),
-            Measure::InverseDepth { slope, offset } => slope * value + offset,
-            Measure::Disparity => return None,
+            ValueKind::Depth { metres } => 1.0 / (metres * value),
+            ValueKind::InverseDepth { slope, offset } => slope * value + offset,
+            ValueKind::Disparity => return None,
         };
         (q.is_finite() && q > 0.0).then_some(q)
     }
 
-    /// Depth in metres of a map value (eq. 6); `None` as for [`Measure::inverse_depth`].
+    /// Depth in metres of a map value (eq. 6); `None` as for [`ValueKind::inverse_depth`].
     #[inline]
     pub fn depth_m(&self, value: f64) -> Option<f64> {
         self.inverse_depth(value).map(f64::recip)
     }
 
     /// The map value that means a depth in metres (eq. 6 the other way); `None` for
-    /// [`Measure::Disparity`] or a depth that is not positive.
+    /// [`ValueKind::Disparity`] or a depth that is not positive.
     #[inline]
     pub fn value(&self, depth_m: f64) -> Option<f64> {
         if !(depth_m > 0.0 && depth_m.is_finite()) {
             return None;
         }
         match *self {
-            Measure::Depth { metres } => Some(depth_m / metres),
-            Measure::InverseDepth { slope, offset } => Some((depth_m.recip() - offset) / slope),
-            Measure::Disparity => None,
+            ValueKind::Depth { metres } => Some(depth_m / metres),
+            ValueKind::InverseDepth { slope, offset } => Some((depth_m.recip() - offset) / slope),
+            ValueKind::Disparity => None,
         }
     }
 }
@@ -185,19 +186,19 @@ pub(crate) fn within(name: &'static str, given: f64, is_accepted: bool, accepted
     if is_accepted { Ok(()) } else { Err(Error::Camera { name, given, accepted }) }
 }
 
-/// A plane in camera coordinates, Hessian normal form `normal . P + distance = 0`, metres. The
+/// A plane in Hessian normal form, `normal . P + distance = 0`, in camera coordinates, metres. The
 /// normal has length 1 and points to the camera's side, so `distance >= 0` is the camera's distance
 /// from the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Hessian {
+pub struct HessianNormalForm {
     /// Unit normal in camera coordinates, towards the camera.
     pub normal: [f64; 3],
     /// Distance of the camera from the plane, metres.
     pub distance: f64,
 }
 
-impl Hessian {
+impl HessianNormalForm {
     /// The plane whose inverse depth is `1/z = a u + b v + c` (1/m, pixels); `None` if all three
     /// are 0 (a plane at infinity).
     ///
@@ -208,7 +209,7 @@ impl Hessian {
         if !(length > 0.0 && length.is_finite()) {
             return None;
         }
-        Some(Hessian { normal: m.map(|x| -x / length), distance: length.recip() })
+        Some(HessianNormalForm { normal: m.map(|x| -x / length), distance: length.recip() })
     }
 
     /// The coefficients (a, b, c) of `1/z = a u + b v + c`, the other way; `None` for a plane

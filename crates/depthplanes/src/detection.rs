@@ -1,6 +1,6 @@
 //! The answer: a label image of the input's shape and one record for each plane.
 
-use crate::camera::Hessian;
+use crate::camera::HessianNormalForm;
 use crate::noise::ExpectedNoise;
 
 /// What a method found in one map. A [`crate::Detector`] owns one and reuses its memory.
@@ -121,8 +121,8 @@ pub struct Plane {
     /// The least-squares plane in the map's own units; `None` if the pixels lie in one row or one
     /// column, where no plane is determined. Its numbers are finite.
     pub fit: Option<MapFit>,
-    /// The plane in camera coordinates; `None` without intrinsics and a metric measure, without a fit, if a pixel lies at
-    /// or behind infinity, or if one of its numbers would not be finite.
+    /// The plane in camera coordinates; `None` without intrinsics and a metric value kind, without a fit, if a pixel lies
+    /// at or behind infinity, or if one of its numbers would not be finite.
     pub metric: Option<MetricPlane>,
 }
 
@@ -198,7 +198,7 @@ pub struct MapFit {
 #[non_exhaustive]
 pub struct MetricPlane {
     /// `normal . P + distance = 0`, the normal towards the camera.
-    pub plane: Hessian,
+    pub plane: HessianNormalForm,
     /// Root mean square distance of the points from the plane, metres.
     pub rms_m: f64,
     /// Mean of the points, metres.
@@ -215,7 +215,7 @@ pub struct MetricPlane {
 
 impl MetricPlane {
     /// A plane of which only its equation and the mean of its points are known, for detections that were made elsewhere.
-    pub fn new(plane: Hessian, centroid_m: [f64; 3]) -> Self {
+    pub fn new(plane: HessianNormalForm, centroid_m: [f64; 3]) -> Self {
         let covariance_from = CovarianceSource::Residuals;
         MetricPlane { plane, rms_m: 0.0, centroid_m, area_m2: None, covariance: [[0.0; 4]; 4], covariance_from }
     }

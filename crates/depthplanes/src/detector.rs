@@ -36,7 +36,7 @@ use crate::util::parallel::install;
 ///     1001, 1001,    0, 2001, 2002,
 ///     1001, 1002, 1002, 2002, 2002,
 /// ];
-/// let mut detector = Detector::new(Ngaf::default().theta(1.0).min(7))?;
+/// let mut detector = Detector::new(Ngaf::default().theta(1.0).min_pixels(7))?;
 /// let found = detector.detect(DepthView::new(&depth_mm, 5, 4)?)?;
 /// assert_eq!(found.planes.len(), 2);
 /// assert_eq!(found.planes[0].pixel_count, 11);
@@ -79,7 +79,7 @@ impl Detector {
     ///
     /// ```
     /// use depthplanes::{Detector, Planar, methods};
-    /// Detector::new(Planar::default().min(500))?;
+    /// Detector::new(Planar::default().min_pixels(500))?;
     /// Detector::new(methods::find("ransac")?)?;
     /// Detector::new(methods::find("ransac")?.with(&[("epsilon", 0.02)])?)?;
     /// # Ok::<(), depthplanes::Error>(())
@@ -204,8 +204,8 @@ impl Detector {
     /// let wall = [1000u16; 64];
     /// let mut detector = Detector::new(Planar::default())?;
     /// let why = detector.explain(DepthView::new(&wall, 8, 8)?, [3, 4])?;
-    /// assert_eq!(why.verdict.kind(), "small"); // 64 pixels, and `min` is 100
-    /// assert_eq!(why.suggestions[0].parameters[0].0, "min");
+    /// assert_eq!(why.verdict.kind(), "small"); // 64 pixels, and `min-pixels` is 100
+    /// assert_eq!(why.suggestions[0].parameters[0].0, "min-pixels");
     /// # Ok::<(), depthplanes::Error>(())
     /// ```
     pub fn explain<'m>(&mut self, map: impl Into<AnyView<'m>>, at: [usize; 2]) -> Result<Explanation> {
@@ -258,13 +258,14 @@ impl Detector {
 }
 
 /// Parameters that leave fewer planes if they are raised, those that do most first.
-const FEWER_PLANES: [&str; 7] = ["min", "min-area", "theta", "theta-gradient", "epsilon", "window", "noise-scale"];
+const FEWER_PLANES: [&str; 7] =
+    ["min-pixels", "min-area", "theta", "theta-gradient", "epsilon", "window", "noise-scale"];
 
 /// An error with the names of the method's own parameters.
 fn named(error: Error, method: &MethodInfo) -> Error {
     match error {
         Error::TooManyPlanes { found, .. } => {
-            let is_in_table = |name: &&str| method.params.iter().any(|param| param.name == *name);
+            let is_in_table = |name: &&str| method.position(name).is_some();
             let raised: Vec<String> =
                 FEWER_PLANES.into_iter().filter(is_in_table).map(|name| format!("`{name}`")).collect();
             Error::TooManyPlanes { found, raise: raised.join(" or ") }

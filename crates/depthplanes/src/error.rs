@@ -67,7 +67,7 @@ pub enum Error {
         /// What is accepted.
         accepted: String,
     },
-    /// A camera or a measure that describes no real one.
+    /// A camera or a unit that describes no real one.
     Camera {
         /// The quantity at fault.
         name: &'static str,
@@ -99,13 +99,13 @@ pub enum Error {
         /// Fewest that are accepted.
         least: usize,
     },
-    /// Maps of different measures where one noise is to be estimated from all.
-    MixedMeasures,
+    /// Maps of different value kinds where one noise is to be estimated from all.
+    MixedValueKinds,
     /// More planes than 16-bit labels can name.
     TooManyPlanes {
         /// Planes found.
         found: usize,
-        /// The method's parameters that leave fewer if they are raised, as a message has them: `` `min` or `theta` ``.
+        /// The method's parameters that leave fewer if they are raised, as a message has them: `` `min-pixels` or `theta` ``.
         raise: String,
     },
     /// Curved surfaces were asked of a method that does not tell them from planes.
@@ -195,7 +195,7 @@ impl fmt::Display for Error {
                 f,
                 "the noise cannot be told from {found} blocks of 4 x 4 pixels that have their valid pixels and others beside them; at least {least} are needed"
             ),
-            Error::MixedMeasures => {
+            Error::MixedValueKinds => {
                 write!(
                     f,
                     "the maps' numbers mean different things; one noise estimate needs maps of depth only, or disparity of one rig only"

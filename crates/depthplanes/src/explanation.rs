@@ -140,9 +140,9 @@ pub enum Verdict {
     Small {
         /// Its pixels.
         pixels: usize,
-        /// The parameter `min`.
-        min: u32,
-        /// Whether it was dropped early, before its pixels were looked at one by one; then half of `min` is asked for.
+        /// The parameter `min-pixels`.
+        min_pixels: u32,
+        /// Whether it was dropped early, before its pixels were looked at one by one; then half of `min-pixels` is asked for.
         early: bool,
     },
     /// Part of a curved surface.
@@ -214,12 +214,16 @@ impl fmt::Display for Verdict {
                 f,
                 "No plane here: of its tile's pixels {pixels} were measured, and a region starts from {least}."
             ),
-            Verdict::Small { pixels, min, early: false } => {
-                write!(f, "No plane here: its surface has {}, and min = {min} asks for more.", counted(*pixels))
+            Verdict::Small { pixels, min_pixels, early: false } => {
+                write!(
+                    f,
+                    "No plane here: its surface has {}, and min-pixels = {min_pixels} asks for more.",
+                    counted(*pixels)
+                )
             }
-            Verdict::Small { pixels, min, early: true } => write!(
+            Verdict::Small { pixels, min_pixels, early: true } => write!(
                 f,
-                "No plane here: its region of {} is smaller than half of min = {min}, and is not looked at further.",
+                "No plane here: its region of {} is smaller than half of min-pixels = {min_pixels}, and is not looked at further.",
                 counted(*pixels)
             ),
             Verdict::Curved => write!(f, "No plane here: it is part of a curved surface; see `detect --curved`."),

@@ -3,12 +3,12 @@
 //! Your own pixels and your own camera:
 //!
 //! ```
-//! use depthplanes::{DepthView, Detector, Intrinsics, Measure, Sensor};
+//! use depthplanes::{DepthView, Detector, Intrinsics, Sensor, ValueKind};
 //! // A wall 2 m away, 16-bit millimetres, row by row; 0 is missing.
 //! let (width, height) = (64, 48);
 //! let depth_mm = vec![2000u16; width * height];
 //! let sensor = Sensor::default()
-//!     .measure(Measure::depth(0.001)?) // metres in a unit of the map
+//!     .value_kind(ValueKind::depth(0.001)?) // metres in a unit of the map
 //!     .intrinsics(Intrinsics::new(58.0, 58.0, 31.5, 23.5)?); // fx, fy, cx, cy, pixels
 //! let mut detector = Detector::default().sensor(sensor); // keep it: later frames allocate nothing
 //! let found = detector.detect(DepthView::new(&depth_mm, width, height)?)?;
@@ -24,7 +24,7 @@
 //! |---|---|
 //! | find planes in frame after frame, with parameters, on threads | [`Detector`], [`Planar`], [`Ngaf`] |
 //! | hand over pixels with a stride, holes, several types | [`DepthView`], [`AnyView`] |
-//! | say what the numbers mean, which camera, how noisy | [`Sensor`], [`Measure`], [`Intrinsics`], [`noise`] |
+//! | say what the numbers mean, which camera, how noisy | [`Sensor`], [`ValueKind`], [`Intrinsics`], [`noise`] |
 //! | read the answer | [`Detection`], [`Plane`], [`detection::MetricPlane`] |
 //! | make polygons, hulls, rectangles of it | [`outline::Outliner`] |
 //! | join the pieces of one plane | [`Detector::merge_coplanar`] |
@@ -67,7 +67,7 @@ mod statistics;
 mod tests;
 mod util;
 
-pub use camera::{Hessian, Intrinsics, Measure};
+pub use camera::{HessianNormalForm, Intrinsics, ValueKind};
 pub use coplanar::Coplanar;
 pub use detection::{CovarianceSource, Detection, Part, Plane};
 pub use detector::Detector;
@@ -86,6 +86,6 @@ pub mod internals {
     pub use crate::components::selection::{LabelledRun, Selection};
     pub use crate::components::{Compiles, ConnectedComponents, Connectivity, Groups, Kernel, Run, best, kernels};
     pub use crate::methods::{Enhancer, Fillable};
-    pub use crate::statistics::least_squares::{AffineFit, Moments, ValueSums, hessian, metric_covariance};
+    pub use crate::statistics::least_squares::{AffineFit, Moments, ValueSums, hessian_normal_form, metric_covariance};
     pub use crate::statistics::{PlaneStatistics, PlaneSums, Seen};
 }

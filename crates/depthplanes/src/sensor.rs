@@ -1,16 +1,16 @@
 //! What is known of how a map came about: what its numbers mean, the camera, the noise.
 
-use crate::camera::{Hessian, Intrinsics, Measure};
+use crate::camera::{HessianNormalForm, Intrinsics, ValueKind};
 use crate::error::{Error, Result};
 use crate::lens::distortion::Distortion;
 use crate::noise::sensor_noise::SensorNoise;
 
 /// Everything known about how a map came about. Detection needs none of it; metric planes need
-/// measure and camera.
+/// a metric value kind and the camera.
 ///
 /// ```
-/// use depthplanes::{Intrinsics, Measure, Sensor};
-/// let sensor = Sensor::default().measure(Measure::depth(0.001)?).intrinsics(Intrinsics::new(525.0, 525.0, 319.5, 239.5)?);
+/// use depthplanes::{Intrinsics, Sensor, ValueKind};
+/// let sensor = Sensor::default().value_kind(ValueKind::depth(0.001)?).intrinsics(Intrinsics::new(525.0, 525.0, 319.5, 239.5)?);
 /// assert!(sensor.noise.is_none()); // it is estimated from each map
 /// # Ok::<(), depthplanes::Error>(())
 /// ```
@@ -18,8 +18,8 @@ use crate::noise::sensor_noise::SensorNoise;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Sensor {
-    /// What the numbers mean.
-    pub measure: Measure,
+    /// What the numbers mean: depth in some unit, inverse depth or disparity.
+    pub value_kind: ValueKind,
     /// The camera, if known.
     pub intrinsics: Option<Intrinsics>,
     /// The distortion of the camera's lens; none for maps of a pinhole camera and rectified ones. Without intrinsics it means
@@ -34,10 +34,10 @@ pub struct Sensor {
 }
 
 impl Sensor {
-    /// This sensor with numbers of another meaning.
+    /// This sensor with numbers of that kind.
     #[must_use]
-    pub fn measure(self, measure: Measure) -> Self {
-        Sensor { measure, ..self }
+    pub fn value_kind(self, value_kind: ValueKind) -> Self {
+        Sensor { value_kind, ..self }
     }
 
     /// This sensor with that camera, or with none.
@@ -79,7 +79,7 @@ impl Sensor {
     /// # Errors
     /// [`Error::Camera`] for a unit, a slope, an offset, a camera, a lens or a noise outside of [`crate::limits`].
     pub(crate) fn check(&self) -> Result<()> {
-        self.measure.check()?;
+        self.value_kind.check()?;
         self.noise.map_or(Ok(()), |noise| noise.check("noise"))?;
         self.smooth_noise.map_or(Ok(()), |noise| noise.check("smooth noise"))?;
         self.distortion.map_or(Ok(()), |distortion| distortion.check())?;
@@ -89,9 +89,9 @@ impl Sensor {
     /// Whether planes can be given in metres.
     ///
     /// # Errors
-    /// [`Error::NotMetric`], which names what `wants` them, unless the measure is metric and the camera known.
+    /// [`Error::NotMetric`], which names what `wants` them, unless the value kind is metric and the camera known.
     pub(crate) fn check_metric(&self, wants: &'static str) -> Result<()> {
-        let is_disparity = self.measure == Measure::Disparity;
+        let is_disparity = self.value_kind == ValueKind::Disparity;
         let is_metric = !is_disparity && self.intrinsics.is_some();
         if is_metric { Ok(()) } else { Err(Error::NotMetric { wants, is_disparity }) }
     }
@@ -101,7 +101,7 @@ impl Default for Sensor {
     /// Depth in millimetres, camera unknown.
     fn default() -> Self {
         Sensor {
-            measure: Measure::Depth { metres: 0.001 },
+            value_kind: ValueKind::Depth { metres: 0.001 },
             intrinsics: None,
             distortion: None,
             noise: None,
@@ -110,8 +110,8 @@ impl Default for Sensor {
     }
 }
 
-impl Hessian {
-    /// As [`Hessian::point_at`], on the true ray behind a lens.
+impl HessianNormalForm {
+    /// As [`HessianNormalForm::point_at`], on the true ray behind a lens.
     pub(crate) fn point_seen_by(&self, [u, v]: [f64; 2], sensor: &Sensor) -> Option<[f64; 3]> {
         self.point_along(sensor.ray(u, v)?)
     }

@@ -1,6 +1,6 @@
 //! `planar` as a whole on each instruction set: a test that needs what the crate hides.
 
-use crate::camera::Measure;
+use crate::camera::ValueKind;
 use crate::detection::Detection;
 use crate::detector::Detector;
 use crate::map::DepthView;
@@ -54,7 +54,7 @@ fn an_estimated_lateral_noise_is_the_same_on_each_kernel_and_any_number_of_threa
     };
     let map: Vec<f32> = (0..width * height).map(&mut pixel).collect();
     let on = |threads: usize, params: Planar| {
-        let sensor = Sensor { measure: Measure::Disparity, ..Sensor::default() };
+        let sensor = Sensor { value_kind: ValueKind::Disparity, ..Sensor::default() };
         let mut detector = Detector::new(params).unwrap().sensor(sensor).threads(threads);
         detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap().clone()
     };
@@ -75,7 +75,7 @@ fn the_same_numbers_give_the_same_labels_as_whole_millimetres_and_as_metres() {
         let frame = scene.parse::<Spec>().unwrap().frame().unwrap();
         let crate::AnyView::U16(counts) = frame.view() else { panic!("{scene} is in millimetres") };
         for units_per_metre in [1000.0, 5000.0] {
-            let of = |metres: f64| Sensor { measure: Measure::Depth { metres }, ..frame.sensor };
+            let of = |metres: f64| Sensor { value_kind: ValueKind::Depth { metres }, ..frame.sensor };
             let metres: Vec<f32> =
                 counts.rows().flatten().map(|&count| (f64::from(count) / units_per_metre) as f32).collect();
             let map = DepthView::new(&metres, counts.width(), counts.height()).unwrap();
@@ -94,7 +94,7 @@ fn the_same_numbers_give_the_same_labels_as_whole_millimetres_and_as_metres() {
         // With one value that is no whole number of units, the map is one of floats.
         let mut floats: Vec<f32> = counts.rows().flatten().map(|&count| f32::from(count) / 1000.0).collect();
         floats.iter_mut().filter(|value| **value > 0.0).take(1).for_each(|value| *value += 1e-5 * *value);
-        let sensor = Sensor { measure: Measure::Depth { metres: 1.0 }, ..frame.sensor };
+        let sensor = Sensor { value_kind: ValueKind::Depth { metres: 1.0 }, ..frame.sensor };
         let mut detector = Detector::default().sensor(sensor);
         assert!(
             !detector

@@ -9,7 +9,7 @@ use depthplanes::noise::{EnlargementFinder, RoundingFinder, Space};
 use depthplanes::outline::Outliner;
 use depthplanes::scene::{ScenePixels, Spec};
 use depthplanes::{
-    Coplanar, DepthView, Detector, Distortion, DistortionModel, Intrinsics, Measure, Ngaf, Pixel, Planar, Sensor,
+    Coplanar, DepthView, Detector, Distortion, DistortionModel, Intrinsics, Ngaf, Pixel, Planar, Sensor, ValueKind,
 };
 use naive::Random;
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -81,16 +81,16 @@ fn frame<T: Pixel>(random: &mut Random, number: u64, width: usize, height: usize
 }
 
 fn everything() -> Ngaf {
-    Ngaf::default().theta(3.0).min(2).window(5).passes(2).max_rms(50.0).min_fill(0.1).margin(1)
+    Ngaf::default().theta(3.0).min_pixels(2).window(5).passes(2).max_rms(50.0).min_fill(0.1).margin(1)
 }
 
 fn sensors() -> [Sensor; 3] {
     let intrinsics = Intrinsics::new(300.0, 300.0, 80.0, 60.0).ok();
-    let stereo = Measure::stereo(1.0, 300.0, 0.1, 0.0).unwrap();
+    let stereo = ValueKind::stereo(1.0, 300.0, 0.1, 0.0).unwrap();
     [
         Sensor::default(),
         Sensor::default().intrinsics(intrinsics),
-        Sensor::default().measure(stereo).intrinsics(intrinsics),
+        Sensor::default().value_kind(stereo).intrinsics(intrinsics),
     ]
 }
 
@@ -128,9 +128,9 @@ fn later_frames_behind_a_lens_allocate_nothing() {
     let lens = Distortion::new(DistortionModel::BrownConrady, &[-0.2, 0.05]).unwrap();
     let [_, depth, stereo] = sensors().map(|sensor| sensor.distortion(lens));
     for sensor in [depth, stereo] {
-        check::<u16, _>(Ngaf::default().theta(3.0).min(2), sensor, (120, 90), 2);
-        check::<f32, _>(Ngaf::default().theta(3.0).min(2), sensor, (97, 33), 1);
-        check::<u16, _>(Planar::default().min(20), sensor, (160, 120), 2);
+        check::<u16, _>(Ngaf::default().theta(3.0).min_pixels(2), sensor, (120, 90), 2);
+        check::<f32, _>(Ngaf::default().theta(3.0).min_pixels(2), sensor, (97, 33), 1);
+        check::<u16, _>(Planar::default().min_pixels(20), sensor, (160, 120), 2);
     }
 }
 
@@ -141,7 +141,7 @@ fn later_frames_allocate_nothing() {
         for params in [plain, everything()] {
             // The last is cut into several strips; more than 32 pixels keep its noise within 65535 planes.
             for (size, firsts, min) in [((120, 90), 6, 2), ((97, 33), 6, 2), ((900, 600), 1, 32)] {
-                let params = params.min(min);
+                let params = params.min_pixels(min);
                 for first in 0..firsts {
                     check::<u8, _>(params, sensor, size, first);
                     check::<u16, _>(params, sensor, size, first);
@@ -155,7 +155,7 @@ fn later_frames_allocate_nothing() {
 #[test]
 fn later_frames_of_planar_allocate_nothing() {
     for sensor in sensors() {
-        for params in [Planar::default(), Planar::default().min(0).noise(2.0).inlier_threshold(1.0)] {
+        for params in [Planar::default(), Planar::default().min_pixels(0).noise(2.0).inlier_threshold(1.0)] {
             for (size, first) in [((120, 90), 0), ((97, 33), 1), ((400, 300), 2)] {
                 check::<u8, _>(params, sensor, size, first);
                 check::<u16, _>(params, sensor, size, first);
@@ -179,8 +179,8 @@ fn later_frames_with_coplanar_planes_joined_allocate_nothing() {
     let rooms: Vec<Vec<u16>> = rooms.collect();
     let mut parts = [0; 2];
     for sensor in &sensors()[1..] {
-        let ngaf = Detector::new(Ngaf::default().theta(3.0).min(2)).unwrap();
-        let planar = Detector::new(Planar::default().min(0).min_area(1e-4)).unwrap();
+        let ngaf = Detector::new(Ngaf::default().theta(3.0).min_pixels(2)).unwrap();
+        let planar = Detector::new(Planar::default().min_pixels(0).min_area(1e-4)).unwrap();
         for ((detector, frames), parts) in [(ngaf, &clutter), (planar, &rooms)].into_iter().zip(&mut parts) {
             let within = Coplanar::new(10.0, 0.1).unwrap();
             let mut detector = detector.sensor(*sensor).merge_coplanar(within).unwrap();
@@ -202,7 +202,7 @@ fn outlines_of_frames_no_more_intricate_than_before_allocate_nothing() {
     for sensor in sensors() {
         for tolerance in [0.0, 1.0, 3.0] {
             let mut random = Random(4);
-            let mut detector = Detector::new(Ngaf::default().theta(3.0).min(2)).unwrap().sensor(sensor);
+            let mut detector = Detector::new(Ngaf::default().theta(3.0).min_pixels(2)).unwrap().sensor(sensor);
             let mut outliner = Outliner::new(tolerance).unwrap();
             let frames: Vec<Vec<u16>> = (0..12).map(|k| frame(&mut random, k, width, height)).collect();
             for (number, frame) in frames.iter().chain(&frames).enumerate() {

@@ -3,7 +3,7 @@
 use depthplanes::methods::{METHODS, find};
 use depthplanes::noise::{NoiseTable, SensorNoise};
 use depthplanes::scene::Random;
-use depthplanes::{DepthView, Detector, Error, Intrinsics, Measure, Sensor};
+use depthplanes::{DepthView, Detector, Error, Intrinsics, Sensor, ValueKind};
 use std::time::{Duration, Instant};
 
 /// A slanted wall with a box in front of it, noisy, millimetres.
@@ -23,19 +23,19 @@ fn searches_with_tolerances_of_nothing_end() {
     let map = noisy(1, size);
     let view = DepthView::new(&map, size[0], size[1]).unwrap();
     let cases: [(&str, &[(&str, f64)]); 8] = [
-        ("ransac", &[("min", 0.0), ("epsilon", 1e-9), ("angle", 90.0)]),
-        ("ransac", &[("min", 0.0), ("epsilon", 1e-3), ("angle", 90.0), ("overlooked", 0.001)]),
-        ("ransac", &[("min", 3.0), ("overlooked", 0.001), ("reach", 100.0)]),
-        ("hough", &[("min", 0.0), ("epsilon", 1e-4), ("misses", 10_000.0), ("votes", 1.0)]),
-        ("hough", &[("min", 0.0), ("angle", 1.0), ("misses", 10_000.0), ("votes", 10_000.0)]),
-        ("ppdfdm", &[("min", 0.0), ("spacing", 1.0), ("radius", 100.0), ("draws", 1000.0), ("delta", 1e6)]),
-        ("ppdfdm", &[("min", 0.0), ("spacing", 1.0), ("delta", 0.1), ("eps", 1e300)]),
-        ("fpdidm", &[("min", 0.0), ("radius", 1.0), ("delta", 0.1), ("eps", 1e300)]),
+        ("ransac", &[("min-pixels", 0.0), ("epsilon", 1e-9), ("angle", 90.0)]),
+        ("ransac", &[("min-pixels", 0.0), ("epsilon", 1e-3), ("angle", 90.0), ("overlooked", 0.001)]),
+        ("ransac", &[("min-pixels", 3.0), ("overlooked", 0.001), ("reach", 100.0)]),
+        ("hough", &[("min-pixels", 0.0), ("epsilon", 1e-4), ("misses", 10_000.0), ("votes", 1.0)]),
+        ("hough", &[("min-pixels", 0.0), ("angle", 1.0), ("misses", 10_000.0), ("votes", 10_000.0)]),
+        ("ppdfdm", &[("min-pixels", 0.0), ("spacing", 1.0), ("radius", 100.0), ("draws", 1000.0), ("delta", 1e6)]),
+        ("ppdfdm", &[("min-pixels", 0.0), ("spacing", 1.0), ("delta", 0.1), ("eps", 1e300)]),
+        ("fpdidm", &[("min-pixels", 0.0), ("radius", 1.0), ("delta", 0.1), ("eps", 1e300)]),
     ];
     for (name, parameters) in cases {
         for metres in [0.001, 1e-12, 1e12] {
             let started = Instant::now();
-            let sensor = Sensor::default().measure(Measure::depth(metres).unwrap());
+            let sensor = Sensor::default().value_kind(ValueKind::depth(metres).unwrap());
             let sensor = sensor.intrinsics(Intrinsics::new(60.0, 60.0, 35.0, 32.0).unwrap());
             let mut detector = Detector::new(find(name).unwrap().with(parameters).unwrap()).unwrap().sensor(sensor);
             detector.detect(view).unwrap();
@@ -48,10 +48,13 @@ fn searches_with_tolerances_of_nothing_end() {
 fn too_many_planes_name_parameters_that_the_method_has() {
     let map: Vec<u8> = (0..400 * 400).map(|at| 1 + ((at % 400 + at / 400) % 2 * 100) as u8).collect();
     let view = DepthView::new(&map, 400, 400).unwrap();
-    let mut detector = Detector::new(find("ngaf").unwrap().with(&[("min", 0.0)]).unwrap()).unwrap();
+    let mut detector = Detector::new(find("ngaf").unwrap().with(&[("min-pixels", 0.0)]).unwrap()).unwrap();
     let error = detector.detect(view).unwrap_err();
-    assert_eq!(error, Error::TooManyPlanes { found: 160_000, raise: "`min` or `theta` or `window`".to_string() });
-    assert!(error.to_string().ends_with("raise `min` or `theta` or `window`"), "{error}");
+    assert_eq!(
+        error,
+        Error::TooManyPlanes { found: 160_000, raise: "`min-pixels` or `theta` or `window`".to_string() }
+    );
+    assert!(error.to_string().ends_with("raise `min-pixels` or `theta` or `window`"), "{error}");
 }
 
 /// Values, units and cameras at the ends of what is accepted; no number may be infinite or none.
@@ -64,19 +67,19 @@ fn numbers_that_cannot_be_given_are_left_out() {
     for surface in surfaces {
         let map: Vec<f32> = (0..24 * 16).map(|at| surface((at % 24) as f32, (at / 24) as f32)).collect();
         let view = DepthView::new(&map, size[0], size[1]).unwrap();
-        for measure in [
-            Measure::Depth { metres: 1e-12 },
-            Measure::Depth { metres: 1e12 },
-            Measure::InverseDepth { slope: 1e-15, offset: 1e15 },
-            Measure::InverseDepth { slope: 1e15, offset: 0.0 },
+        for value_kind in [
+            ValueKind::Depth { metres: 1e-12 },
+            ValueKind::Depth { metres: 1e12 },
+            ValueKind::InverseDepth { slope: 1e-15, offset: 1e15 },
+            ValueKind::InverseDepth { slope: 1e15, offset: 0.0 },
         ] {
             for [focal, middle] in [[1e-3, 1e9], [1e9, -1e9], [20.0, 8.0]] {
                 for noise in [None, Some(1e12), Some(1e-12)] {
                     let noise = noise.map(|base| SensorNoise::Depth { base, growth: base });
                     let camera = Intrinsics::new(focal, -focal, middle, middle).unwrap();
-                    let sensor = Sensor::default().measure(measure).intrinsics(camera).noise(noise);
+                    let sensor = Sensor::default().value_kind(value_kind).intrinsics(camera).noise(noise);
                     for method in METHODS {
-                        let method = method.with(&[("min", 8.0)]).unwrap();
+                        let method = method.with(&[("min-pixels", 8.0)]).unwrap();
                         let mut detector = Detector::new(method).unwrap().sensor(sensor);
                         for plane in &detector.detect(view).unwrap().planes {
                             let Some(plane) = plane.metric else { continue };

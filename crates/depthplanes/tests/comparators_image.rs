@@ -3,7 +3,7 @@
 use depthplanes::methods::find;
 use depthplanes::noise::SensorNoise;
 use depthplanes::scene::{Random, SceneFrame, Spec};
-use depthplanes::{AnyView, DepthView, Detection, Detector, Measure, Sensor};
+use depthplanes::{AnyView, DepthView, Detection, Detector, Sensor, ValueKind};
 
 const METHODS: [&str; 3] = ["ppdfdm", "fpdidm", "gradient"];
 const A_CONTRARIO: [&str; 2] = ["ppdfdm", "fpdidm"];
@@ -19,7 +19,7 @@ fn run<'m>(method: &str, given: &[(&str, f64)], sensor: Sensor, view: impl Into<
 
 fn disparity(sigma: Option<f64>) -> Sensor {
     let noise = sigma.map(|sigma| SensorNoise::Value { sigma });
-    Sensor::default().measure(Measure::Disparity).noise(noise)
+    Sensor::default().value_kind(ValueKind::Disparity).noise(noise)
 }
 
 /// A map of that size, given by column and row.
@@ -86,7 +86,7 @@ fn false_alarms(method: &str, eps: f64, sigma: Option<f64>, maps: u64) -> f64 {
     let found = (0..maps).map(|seed| {
         let mut random = Random::new(1000 + seed);
         let noise = map(64, 48, |_, _| random.between(50.0, 150.0));
-        planes(method, &[("min", 0.0), ("eps", eps)], disparity(sigma), &noise, 64).planes.len()
+        planes(method, &[("min-pixels", 0.0), ("eps", eps)], disparity(sigma), &noise, 64).planes.len()
     });
     found.sum::<usize>() as f64 / maps as f64
 }
@@ -109,7 +109,7 @@ fn small_planes_that_chance_could_make_are_not_found_though_planar_finds_them() 
     let patch = |u: usize, v: usize| (160..168).contains(&u) && (120..128).contains(&v);
     let pixels = map(320, 240, |u, v| 100.0 + 0.4 * random.gaussian() + if patch(u, v) { 6.0 } else { 0.0 });
     let on_patch = |found: &Detection| found.labels[124 * 320 + 164] > 0;
-    let given = [("min", 20.0)];
+    let given = [("min-pixels", 20.0)];
     assert!(on_patch(&planes("planar", &given, disparity(None), &pixels, 320)));
     for method in A_CONTRARIO {
         let found = planes(method, &given, disparity(None), &pixels, 320);
@@ -162,13 +162,13 @@ fn degenerate_maps_have_no_plane() {
             for value in [f64::NAN, 0.0, f64::INFINITY, f64::NEG_INFINITY] {
                 let pixels = map(width, height, |_, _| value);
                 for sensor in [Sensor::default(), disparity(None)] {
-                    let found = planes(method, &[("min", 0.0)], sensor, &pixels, width);
+                    let found = planes(method, &[("min-pixels", 0.0)], sensor, &pixels, width);
                     assert_eq!((found.planes.len(), found.valid_pixels), (0, 0), "{method} {width}x{height} {value}");
                 }
             }
             for value in [1e-38, 9.0, 3e38] {
                 let pixels = map(width, height, |_, _| value);
-                let found = planes(method, &[("min", 0.0)], disparity(None), &pixels, width);
+                let found = planes(method, &[("min-pixels", 0.0)], disparity(None), &pixels, width);
                 // One that is all there is may be found; what is on a line is no plane to an affine fit.
                 assert!(found.planes.len() <= 1, "{method} {width}x{height} {value}: {}", found.planes.len());
             }

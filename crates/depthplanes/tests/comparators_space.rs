@@ -2,7 +2,7 @@
 
 use depthplanes::methods::find;
 use depthplanes::scene::{SceneFrame, ScenePixels, Spec};
-use depthplanes::{AnyView, DepthView, Detection, Detector, Measure, Sensor};
+use depthplanes::{AnyView, DepthView, Detection, Detector, Sensor, ValueKind};
 
 const NAMES: [&str; 3] = ["ransac", "hough", "mdl"];
 
@@ -41,7 +41,7 @@ fn the_three_planes_of_a_corner_are_found_with_a_camera_without_one_and_in_dispa
             let frame = scene(&format!("planes3:sensor={sensor},size=320x240"));
             let known = match (camera, sensor) {
                 (true, _) => frame.sensor,
-                (false, "disparity") => Sensor::default().measure(Measure::Disparity),
+                (false, "disparity") => Sensor::default().value_kind(ValueKind::Disparity),
                 (false, _) => frame.sensor.intrinsics(None),
             };
             let found = detect(name, &[], known, frame.view());
@@ -78,7 +78,7 @@ fn terrace(depths: &[u16]) -> (Vec<u16>, usize, usize) {
 }
 
 fn millimetres() -> Sensor {
-    scene("planes3:size=32x24").sensor.measure(Measure::Depth { metres: 0.001 })
+    scene("planes3:size=32x24").sensor.value_kind(ValueKind::Depth { metres: 0.001 })
 }
 
 #[test]
@@ -119,7 +119,7 @@ fn hough_joins_planes_that_fall_into_one_cell() {
     let depth = |u: f64| 2.0 / (1.0 - slope * (u - 80.0).abs() / 160.0);
     let map: Vec<f32> = (0..width * height).map(|at| depth((at % width) as f64) as f32).collect();
     let sensor = Sensor::default()
-        .measure(Measure::Depth { metres: 1.0 })
+        .value_kind(ValueKind::Depth { metres: 1.0 })
         .intrinsics(depthplanes::Intrinsics::new(160.0, 160.0, 80.0, 60.0).ok());
     let map = DepthView::new(&map, width, height).unwrap();
     let count = |angle: f64| {
@@ -150,7 +150,7 @@ fn mdl_splits_a_wall_that_bows_by_more_than_the_noise() {
                 (2.0 + bow * x * x + 0.002 * random.gaussian()) as f32
             })
             .collect();
-        let sensor = Sensor::default().measure(Measure::Depth { metres: 1.0 });
+        let sensor = Sensor::default().value_kind(ValueKind::Depth { metres: 1.0 });
         detect("mdl", &[("noise", 0.002)], sensor, DepthView::new(&map, 320, 240).unwrap()).planes.len()
     };
     let (flat, bowed) = (wall(0.0), wall(0.02));
@@ -163,7 +163,7 @@ fn mdl_splits_a_wall_that_bows_by_more_than_the_noise() {
 fn mdl_needs_no_tolerance_and_joins_levels_of_a_ramp() {
     // A slant that rounding makes into levels 50 columns wide.
     let map: Vec<u8> = (0..320 * 240).map(|at| (40.0 + 0.02 * (at % 320) as f64).round() as u8).collect();
-    let sensor = Sensor::default().measure(Measure::Disparity);
+    let sensor = Sensor::default().value_kind(ValueKind::Disparity);
     let found = detect("mdl", &[], sensor, DepthView::new(&map, 320, 240).unwrap());
     assert_eq!(found.planes.iter().map(|plane| plane.pixel_count).collect::<Vec<_>>(), [320 * 240]);
 }
@@ -177,8 +177,8 @@ fn maps_of_nothing_give_no_plane_and_maps_of_noise_few() {
     holes[1001] = f32::INFINITY;
     for name in NAMES {
         let known = scene("planes3:size=64x48").sensor;
-        let metres = known.measure(Measure::Depth { metres: 1.0 });
-        for sensor in [metres, Sensor::default(), Sensor::default().measure(Measure::Disparity)] {
+        let metres = known.value_kind(ValueKind::Depth { metres: 1.0 });
+        for sensor in [metres, Sensor::default(), Sensor::default().value_kind(ValueKind::Disparity)] {
             for map in [&vec![0.0; 64 * 48], &vec![f32::NAN; 64 * 48], &holes] {
                 let found = detect(name, &[], sensor, DepthView::new(map, 64, 48).unwrap());
                 assert_eq!(found.planes.len(), 0, "{name}");

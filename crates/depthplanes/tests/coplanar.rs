@@ -3,7 +3,7 @@
 use depthplanes::detection::MetricPlane;
 use depthplanes::noise::SensorNoise;
 use depthplanes::scene::{Camera, Place, Pose, Scene, SceneFrame, SensorModel, Spec, render};
-use depthplanes::{Coplanar, Detection, Detector, Error, Measure, Ngaf, Planar, Sensor};
+use depthplanes::{Coplanar, Detection, Detector, Error, Ngaf, Planar, Sensor, ValueKind};
 
 fn made(scene: &Scene, sensor: SensorModel) -> SceneFrame {
     let camera = Camera::kinect(320, 240, Pose::at_height(1.4, 12.0)).unwrap();
@@ -168,7 +168,7 @@ fn joining_coarsens_the_labels_and_nothing_is_joined_within_nothing() {
 #[test]
 fn every_method_joins_and_threads_and_repetition_change_no_byte() {
     let frame = "room:seed=2,sensor=tof_white".parse::<Spec>().unwrap().frame().unwrap();
-    let ngaf = || Ngaf::default().theta(30.0).min(200).window(3).min_fill(0.1);
+    let ngaf = || Ngaf::default().theta(30.0).min_pixels(200).window(3).min_fill(0.1);
     let detectors: [&dyn Fn() -> Detector; 2] =
         [&|| Detector::new(Planar::default()).unwrap(), &|| Detector::new(ngaf()).unwrap()];
     for make in detectors {
@@ -220,7 +220,7 @@ fn planes_smaller_than_an_area_leave_no_label() {
 fn what_is_in_metres_needs_a_camera() {
     let map = [1000u16; 64];
     let view = depthplanes::DepthView::new(&map, 8, 8).unwrap();
-    let rigless = Sensor::default().measure(Measure::Disparity);
+    let rigless = Sensor::default().value_kind(ValueKind::Disparity);
     for (sensor, is_disparity) in [(Sensor::default(), false), (rigless, true)] {
         let mut join =
             Detector::new(Ngaf::default()).unwrap().sensor(sensor).merge_coplanar(Coplanar::default()).unwrap();
@@ -250,7 +250,7 @@ fn pieces_of_one_plane_of_a_room_are_joined_and_others_are_nearly_coplanar() {
     let (mut together, mut same, mut apart, mut wrong) = (0, 0, 0, 0);
     for seed in 101..=110 {
         let frame = format!("room:seed={seed},sensor=tof_white").parse::<Spec>().unwrap().frame().unwrap();
-        let detector = || Detector::new(Planar::default().min(300)).unwrap().sensor(frame.sensor);
+        let detector = || Detector::new(Planar::default().min_pixels(300)).unwrap().sensor(frame.sensor);
         let before = detector().detect(frame.view()).unwrap().clone();
         let mut joining = detector().merge_coplanar(Coplanar::default()).unwrap();
         let new = coarsening(&before, joining.detect(frame.view()).unwrap());

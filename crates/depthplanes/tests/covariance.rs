@@ -1,16 +1,17 @@
 //! Covariances of planes against the truth: the normalised error squared of (normal, distance) has 3 degrees of
 //! freedom, since the normal has two, and so the mean 3.
 
-use depthplanes::internals::{Moments, hessian, metric_covariance};
+use depthplanes::internals::{Moments, hessian_normal_form, metric_covariance};
 use depthplanes::noise::{NoiseTable, SensorNoise};
 use depthplanes::scene::{Random, SceneFrame, SensorModel, Spec};
 use depthplanes::{
-    CovarianceSource, DepthView, Detection, Detector, Hessian, Intrinsics, Measure, Ngaf, Planar, Plane, Sensor,
+    CovarianceSource, DepthView, Detection, Detector, HessianNormalForm, Intrinsics, Ngaf, Planar, Plane, Sensor,
+    ValueKind,
 };
 use nalgebra::{SMatrix, Vector3, Vector4};
 
 /// Error of a plane, squared, in units of its covariance; and the standard deviation of its normal, degrees.
-fn normalised(plane: &Hessian, covariance: &[[f64; 4]; 4], truth: &Hessian) -> (f64, f64) {
+fn normalised(plane: &HessianNormalForm, covariance: &[[f64; 4]; 4], truth: &HessianNormalForm) -> (f64, f64) {
     let normal = Vector3::from(plane.normal);
     let beside = if normal.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
     let first = normal.cross(&beside).normalize();
@@ -27,7 +28,7 @@ fn normalised(plane: &Hessian, covariance: &[[f64; 4]; 4], truth: &Hessian) -> (
     (error.dot(&(covariance.try_inverse().unwrap() * error)), degrees)
 }
 
-fn normalised_error(plane: &Plane, truth: &Hessian) -> f64 {
+fn normalised_error(plane: &Plane, truth: &HessianNormalForm) -> f64 {
     let metric = plane.metric.unwrap();
     normalised(&metric.plane, &metric.covariance, truth).0
 }
@@ -50,7 +51,7 @@ fn plane(random: &mut Random) -> [f64; 3] {
 /// What a map is made of, and what the detector is told.
 struct Case {
     name: &'static str,
-    measure: Measure,
+    value_kind: ValueKind,
     noise: SensorNoise,
     /// Whether the map has whole values, not single precision.
     is_whole: bool,
@@ -60,7 +61,7 @@ impl Case {
     /// The value of a pixel at an exact depth.
     fn value(&self, depth_m: f64, random: &mut Random) -> f64 {
         let draw = random.gaussian();
-        let value = |depth_m: f64| self.measure.value(depth_m).unwrap_or(0.0);
+        let value = |depth_m: f64| self.value_kind.value(depth_m).unwrap_or(0.0);
         match self.noise {
             SensorNoise::Value { sigma } => value(depth_m) + sigma * draw,
             noise => value(depth_m + noise.depth_sigma_m(depth_m).unwrap() * draw),
@@ -69,7 +70,7 @@ impl Case {
 
     /// What is found in a map of noisy values.
     fn detect(&self, values: &[f64], width: usize, height: usize, intrinsics: Intrinsics) -> Detection {
-        let sensor = Sensor::default().measure(self.measure).intrinsics(Some(intrinsics)).noise(Some(self.noise));
+        let sensor = Sensor::default().value_kind(self.value_kind).intrinsics(Some(intrinsics)).noise(Some(self.noise));
         let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
         if self.is_whole {
             let whole: Vec<u16> = values.iter().map(|value| value.round() as u16).collect();
@@ -81,19 +82,19 @@ impl Case {
     }
 }
 
-const MILLIMETRES: Measure = Measure::Depth { metres: 0.001 };
+const MILLIMETRES: ValueKind = ValueKind::Depth { metres: 0.001 };
 
 fn cases() -> [Case; 7] {
     let table = NoiseTable::new(&[[0.5, 0.001], [1.5, 0.002], [2.5, 0.009], [8.0, 0.06]]).unwrap();
     // A Kinect's: eighths of a pixel at 580 px and 7.5 cm, with half a step of noise.
-    let rig = Measure::stereo(0.125, 580.0, 0.075, 0.0).unwrap();
+    let rig = ValueKind::stereo(0.125, 580.0, 0.075, 0.0).unwrap();
     let pixels = SensorNoise::Value { sigma: 0.5 };
     let depth = |base, growth| SensorNoise::Depth { base, growth };
-    let case = |name, measure, noise, is_whole| Case { name, measure, noise, is_whole };
+    let case = |name, value_kind, noise, is_whole| Case { name, value_kind, noise, is_whole };
     [
         case("constant in disparity", rig, pixels, false),
         case("constant in disparity, eighths of a pixel", rig, pixels, true),
-        case("z^2", Measure::Depth { metres: 1.0 }, depth(0.0, 1.4e-3), false),
+        case("z^2", ValueKind::Depth { metres: 1.0 }, depth(0.0, 1.4e-3), false),
         case("a + b z^2, millimetres", MILLIMETRES, depth(0.003, 0.001), true),
         case("time of flight, millimetres", MILLIMETRES, depth(0.001, 0.0013), true),
         case("constant in depth, millimetres", MILLIMETRES, depth(0.005, 0.0), true),
@@ -113,7 +114,7 @@ fn errors_of_single_planes_are_what_the_noise_says() {
         let mut random = Random::new(40);
         let scene = |_| {
             let [a, b, c] = plane(&mut random);
-            let truth = Hessian::from_inverse_depth([a, b, c], &camera()).unwrap();
+            let truth = HessianNormalForm::from_inverse_depth([a, b, c], &camera()).unwrap();
             let depth_m = |at: usize| (a * (at % WIDTH) as f64 + b * (at / WIDTH) as f64 + c).recip();
             let values: Vec<f64> = (0..WIDTH * HEIGHT).map(|at| case.value(depth_m(at), &mut random)).collect();
             let found = case.detect(&values, WIDTH, HEIGHT, camera());
@@ -130,7 +131,7 @@ fn matched<'a>(
     frame: &'a SceneFrame,
     found: &'a Detection,
     purity: f64,
-) -> impl Iterator<Item = (&'a Plane, &'a Hessian)> {
+) -> impl Iterator<Item = (&'a Plane, &'a HessianNormalForm)> {
     let mut on = vec![vec![0usize; frame.truth.planes.len() + 1]; found.planes.len() + 1];
     for (&truth, &label) in frame.truth.labels.iter().zip(&found.labels) {
         on[usize::from(label)][usize::from(truth)] += 1;
@@ -198,14 +199,14 @@ fn residuals_speak_where_the_noise_is_not_known_or_too_small() {
     let mut errors = [Vec::new(), Vec::new()];
     for _ in 0..1000 {
         let [a, b, c] = plane(&mut random);
-        let truth = Hessian::from_inverse_depth([a, b, c], &camera()).unwrap();
+        let truth = HessianNormalForm::from_inverse_depth([a, b, c], &camera()).unwrap();
         let depth_m = |at: usize| (a * (at % WIDTH) as f64 + b * (at / WIDTH) as f64 + c).recip();
         let values: Vec<u16> =
             (0..WIDTH * HEIGHT).map(|at| case.value(depth_m(at), &mut random).round() as u16).collect();
         // A seventh of the truth.
         let little = SensorNoise::Depth { base: 0.00015, growth: 0.00019 };
         for (noise, errors) in [None, Some(little)].into_iter().zip(&mut errors) {
-            let sensor = Sensor::default().measure(case.measure).intrinsics(Some(camera())).noise(noise);
+            let sensor = Sensor::default().value_kind(case.value_kind).intrinsics(Some(camera())).noise(noise);
             let mut detector = Detector::new(Ngaf::default().theta(1e6)).unwrap().sensor(sensor);
             let found = detector.detect(DepthView::new(&values, WIDTH, HEIGHT).unwrap()).unwrap();
             let from = if noise.is_some() { CovarianceSource::Noise } else { CovarianceSource::Residuals };
@@ -226,7 +227,7 @@ fn the_normal_of_a_small_patch_may_be_off_by_degrees() {
         let p = 1.0 / random.between(0.5, 8.0);
         let (u, v) = (random.between(0.0, 620.0).floor(), random.between(0.0, 460.0).floor());
         let [a, b] = [0; 2].map(|_| random.between(-1.0, 1.0) * p / 580.0);
-        let truth = Hessian::from_inverse_depth([a, b, p - a * u - b * v], &camera).unwrap();
+        let truth = HessianNormalForm::from_inverse_depth([a, b, p - a * u - b * v], &camera).unwrap();
         let sigma = random.between(0.2, 3.0) * 1.5e-3;
         let mut sums = Moments::default();
         for (du, dv) in (0..400).map(|k| (f64::from(k % 20), f64::from(k / 20))) {
@@ -234,7 +235,7 @@ fn the_normal_of_a_small_patch_may_be_off_by_degrees() {
         }
         let fit = sums.fit().unwrap().moved([u, v, 0.0]);
         let known = fit.covariance().map(|row| row.map(|x| x * sigma * sigma / fit.variance()));
-        let plane = hessian(&fit, &camera).unwrap();
+        let plane = hessian_normal_form(&fit, &camera).unwrap();
         let (error, degrees) = normalised(&plane, &metric_covariance(fit.abc, &known, &camera), &truth);
         // Of a covariance this small nothing but the first order is left.
         let little = metric_covariance(fit.abc, &known.map(|row| row.map(|x| 1e-8 * x)), &camera);
@@ -250,11 +251,11 @@ fn the_normal_of_a_small_patch_may_be_off_by_degrees() {
     }
 }
 
-/// What a camera's model states of its error, white and smooth, for maps with that measure.
-fn stated(model: SensorModel, measure: Measure) -> [SensorNoise; 2] {
+/// What a camera's model states of its error, white and smooth, for maps of that value kind.
+fn stated(model: SensorModel, value_kind: ValueKind) -> [SensorNoise; 2] {
     let error = model.error_at(2.0);
-    [error.white, error.smooth].map(|sigma| match measure {
-        Measure::InverseDepth { slope, .. } => SensorNoise::Value { sigma: sigma / slope },
+    [error.white, error.smooth].map(|sigma| match value_kind {
+        ValueKind::InverseDepth { slope, .. } => SensorNoise::Value { sigma: sigma / slope },
         _ => SensorNoise::Depth { base: 0.0, growth: sigma },
     })
 }
@@ -266,7 +267,7 @@ fn errors_in_rooms(sensor: &str, is_stated: bool) -> Vec<f64> {
     for seed in 1..=20 {
         let mut frame = format!("random:sensor={sensor},seed={seed}").parse::<Spec>().unwrap().frame().unwrap();
         if is_stated {
-            let [noise, smooth] = stated(SensorModel::find(sensor).unwrap(), frame.sensor.measure);
+            let [noise, smooth] = stated(SensorModel::find(sensor).unwrap(), frame.sensor.value_kind);
             (frame.sensor.noise, frame.sensor.smooth_noise) = (Some(noise), Some(smooth));
         }
         let mut detector = Detector::new(Planar::default()).unwrap().sensor(frame.sensor);

@@ -4,7 +4,7 @@ use depthplanes::explanation::Explanation;
 use depthplanes::methods::METHODS;
 use depthplanes::noise::SensorNoise;
 use depthplanes::scene::{Camera, Place, Pose, Random, Scene, SceneFrame, SensorModel, Spec, render};
-use depthplanes::{DepthView, Detector, Error, Measure, Planar, Sensor};
+use depthplanes::{DepthView, Detector, Error, Planar, Sensor, ValueKind};
 
 fn scene(spec: &str) -> SceneFrame {
     spec.parse::<Spec>().unwrap().frame().unwrap()
@@ -40,7 +40,7 @@ impl Alarms {
     fn add(&mut self, map: &[f32], middles: &[[usize; 2]]) {
         let view = DepthView::new(map, WIDTH, HEIGHT).unwrap();
         let noise = Some(SensorNoise::Value { sigma: SIGMA });
-        let sensor = Sensor::default().measure(Measure::Disparity).noise(noise);
+        let sensor = Sensor::default().value_kind(ValueKind::Disparity).noise(noise);
         let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor).curved(true);
         let found = detector.detect(view).unwrap().clone();
         let labels = found.curved.as_ref().unwrap();
@@ -232,7 +232,7 @@ fn no_pixel_is_both_curved_and_in_a_plane() {
         let map: Vec<u16> = (0..width * height).map(|at| value(at, &mut random)).collect();
         let view = DepthView::new(&map, width, height).unwrap();
         for (scale, threshold) in [(1.0, 3.0), (0.02, 0.6), (0.1, 20.0)] {
-            let planar = Planar::default().min(3).noise_scale(scale).inlier_threshold(threshold);
+            let planar = Planar::default().min_pixels(3).noise_scale(scale).inlier_threshold(threshold);
             let mut detector = Detector::new(planar).unwrap().curved(true);
             let found = detector.detect(view).unwrap();
             let curved = &found.curved.as_ref().unwrap().labels;

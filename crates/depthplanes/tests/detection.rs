@@ -4,7 +4,7 @@ mod naive;
 
 use depthplanes::noise::SensorNoise;
 use depthplanes::scene::{Camera, Pose, SCENES, Scene, SceneFrame, SensorModel, Spec, render};
-use depthplanes::{AnyView, DepthView, Detection, Detector, Intrinsics, Measure, Ngaf, Plane, Sensor, with_view};
+use depthplanes::{AnyView, DepthView, Detection, Detector, Intrinsics, Ngaf, Plane, Sensor, ValueKind, with_view};
 use naive::{Fit, Random, Record};
 
 fn values(view: &AnyView<'_>) -> Vec<f64> {
@@ -87,13 +87,13 @@ fn check_fit(plane: &Plane, record: &Record, what: &str) {
 
 /// The plane in metres: least squares in inverse depth, then distances point by point.
 fn check_metric(plane: &Plane, found: &Detection, map: &[f64], sensor: Sensor, what: &str) {
-    let camera = sensor.intrinsics.filter(|_| sensor.measure != Measure::Disparity);
+    let camera = sensor.intrinsics.filter(|_| sensor.value_kind != ValueKind::Disparity);
     assert_eq!(plane.metric.is_some(), camera.is_some() && plane.fit.is_some(), "{what}");
     let (Some(metric), Some(camera)) = (plane.metric, camera) else { return };
-    let inverse_depth = |value: f64| match sensor.measure {
-        Measure::Depth { metres } => 1.0 / (metres * value),
-        Measure::InverseDepth { slope, offset } => slope * value + offset,
-        Measure::Disparity => unreachable!("no metric planes"),
+    let inverse_depth = |value: f64| match sensor.value_kind {
+        ValueKind::Depth { metres } => 1.0 / (metres * value),
+        ValueKind::InverseDepth { slope, offset } => slope * value + offset,
+        ValueKind::Disparity => unreachable!("no metric planes"),
     };
     let pixels = (0..map.len()).filter(|&at| found.labels[at] == plane.label);
     let points: Vec<[f64; 3]> =
@@ -122,19 +122,19 @@ fn check_metric(plane: &Plane, found: &Detection, map: &[f64], sensor: Sensor, w
 
 fn sensors() -> [Sensor; 4] {
     let intrinsics = Intrinsics::new(90.0, -95.0, 40.0, 21.0).ok();
-    let stereo = Measure::stereo(0.5, 90.0, 0.2, 3.0).unwrap();
+    let stereo = ValueKind::stereo(0.5, 90.0, 0.2, 3.0).unwrap();
     [
         Sensor::default(),
-        Sensor::default().measure(Measure::Depth { metres: 0.02 }).intrinsics(intrinsics),
-        Sensor::default().measure(stereo).intrinsics(intrinsics),
-        Sensor::default().measure(Measure::Disparity).intrinsics(intrinsics),
+        Sensor::default().value_kind(ValueKind::Depth { metres: 0.02 }).intrinsics(intrinsics),
+        Sensor::default().value_kind(stereo).intrinsics(intrinsics),
+        Sensor::default().value_kind(ValueKind::Disparity).intrinsics(intrinsics),
     ]
 }
 
 fn random_params(random: &mut Random) -> Ngaf {
     let window = [0, 0, 3, 5, 9][random.below(5) as usize];
     let passes = 1 + random.below(3) as u32;
-    Ngaf::default().theta(random.below(5) as f64).min(random.below(12) as u32).window(window).passes(passes)
+    Ngaf::default().theta(random.below(5) as f64).min_pixels(random.below(12) as u32).window(window).passes(passes)
 }
 
 /// Runs `test` on the same map as `u8`, `u16` times 50 and `f32` divided by 8.
@@ -162,7 +162,7 @@ fn detections_on_random_maps_are_what_they_say() {
             check(&found, view, &params, sensor, &format!("case {case}, {width}x{height}, {params:?}"));
             let (map, _) = enhanced(&view, &params);
             let groups = naive::flood(&map, width, is_valid(&view), params.theta, !is_whole(&view));
-            assert!(found.labels == naive::select(&groups, params.min as usize), "case {case}, {params:?}");
+            assert!(found.labels == naive::select(&groups, params.min_pixels as usize), "case {case}, {params:?}");
         });
     }
 }
@@ -207,7 +207,7 @@ fn any_number_of_threads_gives_the_same_detection() {
     }
     for (width, height, map) in &maps {
         as_each_type(map, *width, *height, |view, unit| {
-            let params = Ngaf::default().theta(unit).min(200).window(3).max_rms(90.0 * unit);
+            let params = Ngaf::default().theta(unit).min_pixels(200).window(3).max_rms(90.0 * unit);
             let on = |threads: usize| {
                 let mut detector = Detector::new(params).unwrap().sensor(sensors()[1]).threads(threads);
                 detector.detect(view).unwrap().clone()
@@ -224,7 +224,7 @@ fn any_number_of_threads_gives_the_same_detection() {
 fn a_used_detector_answers_like_a_fresh_one() {
     let mut random = Random(73);
     for sensor in sensors() {
-        let params = Ngaf::default().theta(2.0).min(3).window(5).passes(2).min_fill(0.3);
+        let params = Ngaf::default().theta(2.0).min_pixels(3).window(5).passes(2).min_fill(0.3);
         let mut used = Detector::new(params).unwrap().sensor(sensor).threads(2);
         for case in 0..300 {
             let (width, height) = match case % 60 {
@@ -246,7 +246,7 @@ fn a_used_detector_answers_like_a_fresh_one() {
 
 #[test]
 fn a_detector_recovers_from_a_map_with_too_many_planes() {
-    let params = Ngaf::default().min(0);
+    let params = Ngaf::default().min_pixels(0);
     let board: Vec<u8> = (0..400 * 400).map(|at| 1 + ((at % 400 + at / 400) % 2 * 100) as u8).collect();
     let mut detector = Detector::new(params).unwrap();
     let flat = [7u8; 30];
@@ -278,7 +278,7 @@ fn own_conditions_drop_the_planes_that_the_table_says() {
         let (width, height) = (1 + random.below(60) as usize, 1 + random.below(40) as usize);
         let map = naive::awkward_map(&mut random, width, height);
         let view = DepthView::new(&map, width, height).unwrap();
-        let plain = Ngaf::default().theta(random.below(6) as f64).min(random.below(9) as u32);
+        let plain = Ngaf::default().theta(random.below(6) as f64).min_pixels(random.below(9) as u32);
         let pick = |random: &mut Random, choices: [f64; 4]| choices[random.below(4) as usize];
         let params = plain
             .max_rms(pick(&mut random, [0.0, 0.05, 0.7, 2.0]) * (1.0 + 1e-6))
@@ -296,7 +296,7 @@ fn own_conditions_drop_the_planes_that_the_table_says() {
             let area = (u_max - u_min + 1) * (v_max - v_min + 1);
             let inner = (0..map.len()).filter(|&at| all.labels[at] == label && is_inner(at)).count();
             let flat = params.max_rms == 0.0 || record.fit.is_some_and(|fit| fit.rms <= params.max_rms);
-            flat && record.pixel_count as f64 / area as f64 >= params.min_fill && inner > params.min as usize
+            flat && record.pixel_count as f64 / area as f64 >= params.min_fill && inner > params.min_pixels as usize
         };
         let records = naive::records(&all.labels, &values, width);
         let keep: Vec<bool> = records.iter().zip(1..).map(accepts).collect();
@@ -324,7 +324,7 @@ fn conditions_off_are_no_conditions() {
     assert_eq!(planes(Ngaf::default().min_fill(76.0 / 400.0), ring), 1);
     assert_eq!(planes(Ngaf::default().min_fill(0.2), ring), 0);
     // All of the ring lies at the edge.
-    assert_eq!(planes(Ngaf::default().margin(1).min(0), ring), 0);
+    assert_eq!(planes(Ngaf::default().margin(1).min_pixels(0), ring), 0);
 }
 
 /// Compares planes whose pixels all show one true plane with it; returns how many there were.
@@ -392,8 +392,8 @@ fn slanted_planes_are_exact_in_disparity() {
     let (width, height) = (200, 150);
     for case in 0..100 {
         let camera = Intrinsics::new(random.between(150.0, 300.0), random.between(150.0, 300.0), 100.0, 75.0).unwrap();
-        let measure = Measure::stereo(1.0, camera.fx, 0.1, random.between(0.0, 5.0)).unwrap();
-        let Measure::InverseDepth { slope, offset } = measure else { unreachable!("stereo is affine") };
+        let value_kind = ValueKind::stereo(1.0, camera.fx, 0.1, random.between(0.0, 5.0)).unwrap();
+        let ValueKind::InverseDepth { slope, offset } = value_kind else { unreachable!("stereo is affine") };
         // Left and right half, well apart in disparity.
         let planes = [20.0, 60.0].map(|d| [random.between(-0.1, 0.1), random.between(-0.1, 0.1), d]);
         let disparity = |u: usize, v: usize| {
@@ -401,7 +401,7 @@ fn slanted_planes_are_exact_in_disparity() {
             a * (u as f64 - 100.0) + b * (v as f64 - 75.0) + c
         };
         let map: Vec<f32> = (0..width * height).map(|at| disparity(at % width, at / width) as f32).collect();
-        let sensor = Sensor::default().measure(measure).intrinsics(Some(camera));
+        let sensor = Sensor::default().value_kind(value_kind).intrinsics(Some(camera));
         let view = DepthView::new(&map, width, height).unwrap();
         let found = detect(Ngaf::default().theta(0.11), sensor, view.into());
         assert_eq!(found.planes.len(), 2, "case {case}");
@@ -424,7 +424,8 @@ fn values_behind_infinity_leave_a_plane_without_metric_values() {
     let view = DepthView::new(&map, 30, 20).unwrap();
     let intrinsics = Intrinsics::new(100.0, 100.0, 15.0, 10.0).ok();
     let at = |offset: f64| {
-        let sensor = Sensor::default().measure(Measure::InverseDepth { slope: 0.1, offset }).intrinsics(intrinsics);
+        let sensor =
+            Sensor::default().value_kind(ValueKind::InverseDepth { slope: 0.1, offset }).intrinsics(intrinsics);
         detect(Ngaf::default(), sensor, view.into()).planes[0].metric.is_some()
     };
     assert!(at(-0.09) && !at(-0.1) && !at(-5.0));
@@ -436,10 +437,10 @@ fn a_sensor_whose_numbers_mean_nothing_is_refused_however_it_was_made() {
     let view = DepthView::new(&map, 8, 8).unwrap();
     let camera = Intrinsics { fx: 0.0, fy: 50.0, cx: 4.0, cy: 4.0 };
     let wrong = [
-        Sensor::default().measure(Measure::Depth { metres: -1.0 }),
-        Sensor::default().measure(Measure::Depth { metres: f64::NAN }),
-        Sensor::default().measure(Measure::InverseDepth { slope: 0.0, offset: 0.0 }),
-        Sensor::default().measure(Measure::InverseDepth { slope: 1.0, offset: f64::INFINITY }),
+        Sensor::default().value_kind(ValueKind::Depth { metres: -1.0 }),
+        Sensor::default().value_kind(ValueKind::Depth { metres: f64::NAN }),
+        Sensor::default().value_kind(ValueKind::InverseDepth { slope: 0.0, offset: 0.0 }),
+        Sensor::default().value_kind(ValueKind::InverseDepth { slope: 1.0, offset: f64::INFINITY }),
         Sensor::default().intrinsics(camera),
         Sensor::default().intrinsics(Intrinsics { fx: 50.0, cx: f64::NAN, ..camera }),
         Sensor::default().intrinsics(Intrinsics { fx: 1e-9, ..camera }),

@@ -41,13 +41,13 @@ fn detect(detector: &mut Detector, pixels: &[u16], [width, height]: [usize; 2]) 
 fn an_enlarged_map_has_the_planes_of_its_source() {
     let source = room();
     for min in [100, 2000] {
-        let params = Planar::default().min(min);
+        let params = Planar::default().min_pixels(min);
         let right = detect(&mut Detector::new(params).unwrap().sensor(sensor([1.0, 1.0])), &source, SIZE);
         assert_eq!(right.planes.len(), 3);
         for factor @ [x, y] in [[2.0, 2.0], [3.0, 3.0], [2.5, 4.0], [7.5, 7.5]] {
             let (pixels, size) = enlarged(&source, factor);
             for threads in [1, 3] {
-                let params = params.min((f64::from(min) * x * y) as u32);
+                let params = params.min_pixels((f64::from(min) * x * y) as u32);
                 let detector = Detector::new(params).unwrap().threads(threads);
                 let found = detect(&mut detector.sensor(sensor(factor)), &pixels, size);
                 check(&found, &right, size[0], factor);
@@ -74,7 +74,7 @@ fn check(found: &Detection, right: &Detection, width: usize, factor: [f64; 2]) {
 #[test]
 fn min_counts_pixels_of_the_whole_map() {
     let (pixels, size) = enlarged(&room(), [2.0, 2.0]);
-    let with = |min| detect(&mut Detector::new(Planar::default().min(min)).unwrap(), &pixels, size).planes.len();
+    let with = |min| detect(&mut Detector::new(Planar::default().min_pixels(min)).unwrap(), &pixels, size).planes.len();
     let all = detect(&mut Detector::default(), &pixels, size);
     let smallest = all.planes.last().unwrap().pixel_count as u32;
     assert_eq!([with(smallest - 1), with(smallest)], [all.planes.len(), all.planes.len() - 1]);
@@ -105,7 +105,7 @@ fn bends_of_an_enlarged_map_are_reported_on_it() {
     let right = detect(&mut Detector::default().curved(true), &source, SIZE).curved.unwrap();
     assert!(!right.regions.is_empty());
     let (pixels, size) = enlarged(&source, [3.0, 3.0]);
-    let params = Planar::default().min(900);
+    let params = Planar::default().min_pixels(900);
     let found = detect(&mut Detector::new(params).unwrap().curved(true), &pixels, size).curved.unwrap();
     assert_eq!(found.regions.len(), right.regions.len());
     for (at, &label) in found.labels.iter().enumerate() {
@@ -129,12 +129,12 @@ fn a_pixel_of_an_enlarged_map_is_explained_by_that_of_its_source() {
         assert_eq!((why.at, said), (at, (label, found.planes[usize::from(label) - 1].pixel_count)));
         assert!(why.findings[0].subject.contains("column"), "{:?}", why.findings[0]);
     }
-    // All planes are too small: a smaller `min` is suggested, in pixels of this map.
-    let mut detector = Detector::new(Planar::default().min(200_000)).unwrap();
+    // All planes are too small: a smaller `min-pixels` is suggested, in pixels of this map.
+    let mut detector = Detector::new(Planar::default().min_pixels(200_000)).unwrap();
     let why = detector.explain(view, [3, 5]).unwrap();
     assert_eq!(why.verdict.kind(), "small");
     let (name, min) = why.suggestions[0].parameters[0];
-    let mut detector = Detector::new(Planar::default().min(min as u32)).unwrap();
-    assert_eq!(name, "min");
+    let mut detector = Detector::new(Planar::default().min_pixels(min as u32)).unwrap();
+    assert_eq!(name, "min-pixels");
     assert!(detector.detect(view).unwrap().labels[5 * width + 3] > 0, "{min}");
 }

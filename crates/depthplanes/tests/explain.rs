@@ -145,8 +145,8 @@ fn each_reason_is_told() {
 
     let ngaf = find("ngaf").unwrap();
     for (given, at, right) in [
-        (("min", 32.0), [20, 20], "plane"),
-        (("min", 64.0), [20, 20], "small"),
+        (("min-pixels", 32.0), [20, 20], "plane"),
+        (("min-pixels", 64.0), [20, 20], "small"),
         (("min-fill", 1.0), [5, 5], "dropped"),
         (("margin", 20.0), [20, 20], "dropped"),
         (("theta", 1.0), [70, 40], "not_measured"),

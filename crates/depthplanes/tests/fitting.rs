@@ -2,8 +2,8 @@
 
 mod naive;
 
-use depthplanes::internals::{AffineFit, Moments, ValueSums, hessian, metric_covariance};
-use depthplanes::{Hessian, Intrinsics};
+use depthplanes::internals::{AffineFit, Moments, ValueSums, hessian_normal_form, metric_covariance};
+use depthplanes::{HessianNormalForm, Intrinsics};
 use naive::Random;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, SMatrix, Vector3, Vector4};
 
@@ -245,7 +245,7 @@ fn metric_planes_of_analytic_depth_are_exact() {
         let inverse_depth = |[u, v]: [f64; 2]| -normal.dot(&Vector3::from(camera.ray(u, v))) / distance;
         let points: Vec<Point> = pixels.map(|[u, v]| [u, v, inverse_depth([u, v])]).collect();
         let fit = fit(&points).unwrap();
-        let plane = hessian(&fit, &camera).unwrap();
+        let plane = hessian_normal_form(&fit, &camera).unwrap();
         let what = format!("case {case}, {camera:?}");
         (0..3).for_each(|k| assert_near(plane.normal[k], normal[k], 1e-9, &what));
         assert_near(plane.distance, distance, 1e-9, &what);
@@ -258,9 +258,9 @@ fn planes_survive_the_way_to_inverse_depth_and_back() {
     for case in 0..5000 {
         let camera = camera(&mut random);
         let normal = Vector3::from_fn(|_, _| random.gaussian()).normalize();
-        let plane = Hessian { normal: normal.into(), distance: 10f64.powf(random.between(-3.0, 3.0)) };
+        let plane = HessianNormalForm { normal: normal.into(), distance: 10f64.powf(random.between(-3.0, 3.0)) };
         let abc = plane.inverse_depth(&camera).unwrap();
-        let back = Hessian::from_inverse_depth(abc, &camera).unwrap();
+        let back = HessianNormalForm::from_inverse_depth(abc, &camera).unwrap();
         let what = format!("case {case}");
         (0..3).for_each(|k| assert_near(back.normal[k], plane.normal[k], 1e-11, &what));
         assert_near(back.distance, plane.distance, 1e-11 * plane.distance, &what);
@@ -271,9 +271,9 @@ fn planes_survive_the_way_to_inverse_depth_and_back() {
         assert_near(normal.dot(&point) + plane.distance, 0.0, 1e-9 * point.norm().max(1.0), &what);
     }
     let camera = Intrinsics::new(500.0, -500.0, 320.0, 240.0).unwrap();
-    assert!(Hessian::from_inverse_depth([0.0; 3], &camera).is_none());
-    assert!(Hessian::from_inverse_depth([f64::NAN, 0.0, 1.0], &camera).is_none());
-    assert!(Hessian { normal: [0.0, 0.0, -1.0], distance: 0.0 }.inverse_depth(&camera).is_none());
+    assert!(HessianNormalForm::from_inverse_depth([0.0; 3], &camera).is_none());
+    assert!(HessianNormalForm::from_inverse_depth([f64::NAN, 0.0, 1.0], &camera).is_none());
+    assert!(HessianNormalForm { normal: [0.0, 0.0, -1.0], distance: 0.0 }.inverse_depth(&camera).is_none());
 }
 
 #[test]
@@ -282,7 +282,7 @@ fn normals_point_to_the_camera_and_distances_are_not_negative() {
     for _ in 0..5000 {
         let camera = camera(&mut random);
         let abc = [random.between(-0.01, 0.01), random.between(-0.01, 0.01), random.between(-4.0, 4.0)];
-        let plane = Hessian::from_inverse_depth(abc, &camera).unwrap();
+        let plane = HessianNormalForm::from_inverse_depth(abc, &camera).unwrap();
         assert!(plane.distance > 0.0);
         let normal = Vector3::from(plane.normal);
         assert_near(normal.norm(), 1.0, 1e-12, "length");
@@ -293,16 +293,16 @@ fn normals_point_to_the_camera_and_distances_are_not_negative() {
         }
     }
     let camera = Intrinsics::new(500.0, 500.0, 320.0, 240.0).unwrap();
-    let wall = Hessian::from_inverse_depth([0.0, 0.0, 0.5], &camera).unwrap();
+    let wall = HessianNormalForm::from_inverse_depth([0.0, 0.0, 0.5], &camera).unwrap();
     assert_eq!((wall.normal, wall.distance), ([-0.0, -0.0, -1.0], 2.0));
     // A floor one metre below, y being down: 1/z = (v - cy) / fy.
-    let floor = Hessian::from_inverse_depth([0.0, 1.0 / 500.0, -240.0 / 500.0], &camera).unwrap();
+    let floor = HessianNormalForm::from_inverse_depth([0.0, 1.0 / 500.0, -240.0 / 500.0], &camera).unwrap();
     assert_near(floor.normal[1], -1.0, 1e-12, "up");
     assert_near(floor.distance, 1.0, 1e-12, "height");
 }
 
 /// A fit over a rectangle with noise, as a sensor would give it.
-fn noisy_fit(random: &mut Random, truth: &Hessian, camera: &Intrinsics, noise: f64) -> AffineFit {
+fn noisy_fit(random: &mut Random, truth: &HessianNormalForm, camera: &Intrinsics, noise: f64) -> AffineFit {
     let [a, b, c] = truth.inverse_depth(camera).unwrap();
     let at = |k: u64| [300.0 + (k % 40) as f64, 200.0 + (k / 40) as f64];
     let point = |k: u64, random: &mut Random| {
@@ -312,12 +312,12 @@ fn noisy_fit(random: &mut Random, truth: &Hessian, camera: &Intrinsics, noise: f
     fit(&(0..40 * 30).map(|k| point(k, random)).collect::<Vec<_>>()).unwrap()
 }
 
-fn slanted_plane(random: &mut Random, camera: &Intrinsics) -> Hessian {
+fn slanted_plane(random: &mut Random, camera: &Intrinsics) -> HessianNormalForm {
     let (normal, distance) = plane_through(random, camera.ray(320.0, 215.0), 2.0);
-    Hessian { normal: normal.into(), distance }
+    HessianNormalForm { normal: normal.into(), distance }
 }
 
-fn vector(plane: &Hessian) -> Vector4<f64> {
+fn vector(plane: &HessianNormalForm) -> Vector4<f64> {
     let [x, y, z] = plane.normal;
     Vector4::new(x, y, z, plane.distance)
 }
@@ -335,7 +335,7 @@ fn metric_covariances_match_finite_differences() {
             let moved = |sign: f64| {
                 let mut coefficients = fit.abc;
                 coefficients[k] += sign * step;
-                vector(&Hessian::from_inverse_depth(coefficients, &camera).unwrap())
+                vector(&HessianNormalForm::from_inverse_depth(coefficients, &camera).unwrap())
             };
             (moved(1.0) - moved(-1.0)) / (2.0 * step)
         };
@@ -362,7 +362,7 @@ fn metric_covariances_predict_the_scatter_of_fits() {
         let mut sum = 0.0;
         for _ in 0..draws {
             let fit = noisy_fit(&mut random, &truth, &camera, noise);
-            let error = vector(&hessian(&fit, &camera).unwrap()) - vector(&truth);
+            let error = vector(&hessian_normal_form(&fit, &camera).unwrap()) - vector(&truth);
             let covariance = metric_covariance(fit.abc, &fit.covariance(), &camera);
             let covariance = Matrix4::from_fn(|i, j| covariance[i][j]);
             // A unit normal has two degrees of freedom, so the 4 x 4 matrix has rank 3.

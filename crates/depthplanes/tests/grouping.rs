@@ -167,5 +167,5 @@ fn more_planes_than_labels_is_an_error_that_names_the_remedy() {
     let mut grouper = ConnectedComponents::new();
     let groups = grouper.group(&view, &Connectivity::new(view.validity(), 1.0).unwrap(), 1);
     let error = Selection::default().select(groups, 0).unwrap_err();
-    assert!(error.to_string().contains("160000 planes") && error.to_string().contains("raise `min`"), "{error}");
+    assert!(error.to_string().contains("160000 planes") && error.to_string().contains("raise `min-pixels`"), "{error}");
 }

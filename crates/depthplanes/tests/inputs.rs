@@ -4,7 +4,7 @@ mod naive;
 
 use depthplanes::internals::{ConnectedComponents, Connectivity, kernels};
 use depthplanes::limits::{MAX_PIXELS, MAX_SIDE};
-use depthplanes::{AnyView, DepthView, Detector, Error, Intrinsics, Measure, Ngaf, Pixel};
+use depthplanes::{AnyView, DepthView, Detector, Error, Intrinsics, Ngaf, Pixel, ValueKind};
 use naive::Random;
 
 /// The error's message, which holds each of the numbers.
@@ -99,7 +99,7 @@ fn infinities_are_missing_even_within_an_infinite_range() {
     assert_eq!(view.valid_range(0.5, f32::INFINITY).unwrap().valid_pixels(), 2);
     assert_eq!(view.valid_range(f32::NEG_INFINITY, f32::INFINITY).unwrap().valid_pixels(), 3);
     assert_eq!(view.valid_range(f32::NEG_INFINITY, 0.5).unwrap().valid_pixels(), 1);
-    let mut detector = Detector::new(Ngaf::default().theta(1.0).min(0).window(3)).unwrap();
+    let mut detector = Detector::new(Ngaf::default().theta(1.0).min_pixels(0).window(3)).unwrap();
     let found = detector.detect(view.valid_range(0.5, f32::INFINITY).unwrap()).unwrap();
     assert_eq!(found.labels[1], 0);
 }
@@ -208,39 +208,39 @@ fn cameras_that_describe_no_real_one_are_refused() {
         ("fy", Intrinsics::new(1.0, nan, 0.0, 0.0).map(drop)),
         ("cx", Intrinsics::new(1.0, 1.0, nan, 0.0).map(drop)),
         ("cy", Intrinsics::new(1.0, 1.0, 0.0, nan).map(drop)),
-        ("metres per map unit", Measure::depth(nan).map(drop)),
-        ("pixels of disparity", Measure::stereo(nan, 1.0, 1.0, 0.0).map(drop)),
-        ("focal length", Measure::stereo(1.0, nan, 1.0, 0.0).map(drop)),
-        ("baseline", Measure::stereo(1.0, 1.0, nan, 0.0).map(drop)),
-        ("doffs", Measure::stereo(1.0, 1.0, 1.0, nan).map(drop)),
+        ("metres per map unit", ValueKind::depth(nan).map(drop)),
+        ("pixels of disparity", ValueKind::stereo(nan, 1.0, 1.0, 0.0).map(drop)),
+        ("focal length", ValueKind::stereo(1.0, nan, 1.0, 0.0).map(drop)),
+        ("baseline", ValueKind::stereo(1.0, 1.0, nan, 0.0).map(drop)),
+        ("doffs", ValueKind::stereo(1.0, 1.0, 1.0, nan).map(drop)),
     ] {
         let text = result.unwrap_err().to_string();
         assert!(text.contains(name) && text.contains("NaN") && text.contains("accepted"), "{text}");
     }
-    assert!(Measure::depth(-1.0).is_err() && Measure::depth(0.0).is_err());
-    assert!(Measure::depth(1e-30).is_err() && Measure::depth(1e30).is_err() && Measure::depth(1e-9).is_ok());
-    assert!(Measure::stereo(1.0, 1e10, 1e10, 0.0).is_err() && Intrinsics::new(500.0, 500.0, 1e10, 0.0).is_err());
+    assert!(ValueKind::depth(-1.0).is_err() && ValueKind::depth(0.0).is_err());
+    assert!(ValueKind::depth(1e-30).is_err() && ValueKind::depth(1e30).is_err() && ValueKind::depth(1e-9).is_ok());
+    assert!(ValueKind::stereo(1.0, 1e10, 1e10, 0.0).is_err() && Intrinsics::new(500.0, 500.0, 1e10, 0.0).is_err());
     assert!(Intrinsics::new(-500.0, -500.0, -3.0, 1e4).is_ok());
 }
 
 #[test]
-fn measures_turn_values_into_depth_and_back() {
+fn value_kinds_turn_values_into_depth_and_back() {
     let mut random = Random(53);
     for _ in 0..2000 {
         let depth_m = 10f64.powf(random.between(-2.0, 2.0));
-        for measure in [
-            Measure::depth(random.between(1e-4, 1.0)).unwrap(),
-            Measure::stereo(random.between(0.1, 2.0), 500.0, 0.2, random.between(-20.0, 200.0)).unwrap(),
-            Measure::InverseDepth { slope: -1.0 / 4336.0, offset: 0.2516 },
+        for value_kind in [
+            ValueKind::depth(random.between(1e-4, 1.0)).unwrap(),
+            ValueKind::stereo(random.between(0.1, 2.0), 500.0, 0.2, random.between(-20.0, 200.0)).unwrap(),
+            ValueKind::InverseDepth { slope: -1.0 / 4336.0, offset: 0.2516 },
         ] {
-            let value = measure.value(depth_m).unwrap();
-            let back = measure.depth_m(value).unwrap();
-            assert!((back / depth_m - 1.0).abs() < 1e-9, "{measure:?}: {depth_m} m became {back} m");
+            let value = value_kind.value(depth_m).unwrap();
+            let back = value_kind.depth_m(value).unwrap();
+            assert!((back / depth_m - 1.0).abs() < 1e-9, "{value_kind:?}: {depth_m} m became {back} m");
         }
     }
     // Eq. 6: z = f T / d.
-    let stereo = Measure::stereo(1.0, 600.0, 0.1, 0.0).unwrap();
+    let stereo = ValueKind::stereo(1.0, 600.0, 0.1, 0.0).unwrap();
     assert_eq!(stereo.value(2.0), Some(30.0));
     assert_eq!((stereo.depth_m(0.0), stereo.depth_m(-1.0), stereo.value(-2.0)), (None, None, None));
-    assert_eq!((Measure::Disparity.depth_m(3.0), Measure::Disparity.value(3.0)), (None, None));
+    assert_eq!((ValueKind::Disparity.depth_m(3.0), ValueKind::Disparity.value(3.0)), (None, None));
 }

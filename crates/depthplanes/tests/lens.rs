@@ -1,7 +1,8 @@
 //! Planes behind lenses that distort: labels of the map's own pixels, metres as a pinhole camera would give them.
 
 use depthplanes::{
-    Coplanar, DepthView, Detector, Distortion, DistortionModel, Hessian, Intrinsics, Measure, Planar, Sensor,
+    Coplanar, DepthView, Detector, Distortion, DistortionModel, HessianNormalForm, Intrinsics, Planar, Sensor,
+    ValueKind,
 };
 use depthplanes::{describe_labels, outline::Outliner};
 
@@ -9,20 +10,20 @@ const WIDTH: usize = 320;
 const HEIGHT: usize = 288;
 
 /// A wall turned by a tenth, a floor and a side wall that stands at an angle, camera coordinates.
-fn room() -> [Hessian; 3] {
+fn room() -> [HessianNormalForm; 3] {
     let unit = |n: [f64; 3]| {
         let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
         n.map(|x| x / length)
     };
     [([0.1, 0.2, -1.0], 4.0), ([0.05, -0.98, -0.2], 1.2), ([1.0, 0.1, -0.3], 1.5)]
-        .map(|(normal, distance)| Hessian { normal: unit(normal), distance })
+        .map(|(normal, distance)| HessianNormalForm { normal: unit(normal), distance })
 }
 
 /// Depth in metres of each pixel and the number of its plane from 1, along the true rays.
 fn seen(sensor: &Sensor) -> (Vec<f64>, Vec<u16>) {
     let pixel = |at: usize| {
         let Some(ray) = sensor.ray((at % WIDTH) as f64, (at / WIDTH) as f64) else { return (0.0, 0) };
-        let depth = |plane: &Hessian| -plane.distance / (0..3).map(|i| plane.normal[i] * ray[i]).sum::<f64>();
+        let depth = |plane: &HessianNormalForm| -plane.distance / (0..3).map(|i| plane.normal[i] * ray[i]).sum::<f64>();
         let all = room().map(|plane| depth(&plane)).map(|depth| if depth > 0.0 { depth } else { f64::MAX });
         let nearest = (0..3).min_by(|&a, &b| all[a].total_cmp(&all[b])).unwrap();
         (all[nearest], nearest as u16 + 1)
@@ -208,7 +209,7 @@ fn disparities_and_floats_behind_a_lens_have_the_same_planes() {
     let (depth, _) = seen(&sensor);
     let far = |z: f64| z > 60.0;
     let metres: Vec<f32> = depth.iter().map(|&z| if far(z) { f32::NAN } else { z as f32 }).collect();
-    let of_metres = sensor.measure(Measure::depth(1.0).unwrap());
+    let of_metres = sensor.value_kind(ValueKind::depth(1.0).unwrap());
     let found = Detector::default()
         .sensor(of_metres)
         .detect(DepthView::new(&metres, WIDTH, HEIGHT).unwrap())
@@ -217,7 +218,7 @@ fn disparities_and_floats_behind_a_lens_have_the_same_planes() {
         .len();
     assert_eq!(found, 3);
     let disparities: Vec<u16> = depth.iter().map(|&z| if far(z) { 0 } else { (25_600.0 / z).round() as u16 }).collect();
-    let of_disparity = sensor.measure(Measure::InverseDepth { slope: 1.0 / 25_600.0, offset: 0.0 });
+    let of_disparity = sensor.value_kind(ValueKind::InverseDepth { slope: 1.0 / 25_600.0, offset: 0.0 });
     let mut detector = Detector::default().sensor(of_disparity);
     let found = detector.detect(DepthView::new(&disparities, WIDTH, HEIGHT).unwrap()).unwrap();
     assert_eq!(found.planes.len(), 3);

@@ -3,7 +3,7 @@
 mod naive;
 
 use depthplanes::methods::{Configured, METHODS, MethodInfo, Param, ParamKind, find};
-use depthplanes::{AnyView, DepthView, Detection, Detector, Error, Intrinsics, Measure, Sensor};
+use depthplanes::{AnyView, DepthView, Detection, Detector, Error, Intrinsics, Sensor, ValueKind};
 use naive::Random;
 use std::collections::HashSet;
 use std::panic::catch_unwind;
@@ -77,6 +77,21 @@ fn an_unknown_parameter_is_an_error_that_lists_the_known_ones() {
 }
 
 #[test]
+fn an_alias_is_the_parameter_and_errors_have_its_name() {
+    let mut aliases = 0;
+    for (method, param) in each_parameter() {
+        let Some(alias) = param.alias else { continue };
+        assert_eq!(method.position(alias), method.position(param.name));
+        assert!(method.params.iter().all(|other| other.name != alias), "{alias} is another parameter's name");
+        assert!(method.with(&[(alias, param.default)]).is_ok());
+        let error = method.with(&[(alias, param.min - 1.0)]).expect_err("below the least");
+        assert!(matches!(error, Error::Parameter { name, .. } if name == param.name), "{error}");
+        aliases += 1;
+    }
+    assert_eq!(aliases, METHODS.len(), "`min` of every method");
+}
+
+#[test]
 fn defaults_and_the_ends_of_ranges_are_accepted() {
     for (method, param) in each_parameter() {
         for value in [param.default, param.min, param.max] {
@@ -132,8 +147,8 @@ fn sensors() -> [Sensor; 3] {
     let intrinsics = Intrinsics::new(500.0, 500.0, 20.0, 15.0).ok();
     [
         Sensor::default(),
-        Sensor::default().measure(Measure::Depth { metres: 0.001 }).intrinsics(intrinsics),
-        Sensor::default().measure(Measure::stereo(1.0, 500.0, 0.1, 0.0).unwrap()).intrinsics(intrinsics),
+        Sensor::default().value_kind(ValueKind::Depth { metres: 0.001 }).intrinsics(intrinsics),
+        Sensor::default().value_kind(ValueKind::stereo(1.0, 500.0, 0.1, 0.0).unwrap()).intrinsics(intrinsics),
     ]
 }
 

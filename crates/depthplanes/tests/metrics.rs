@@ -5,7 +5,7 @@ use depthplanes::metrics::{
     plane_errors, segcomp,
 };
 use depthplanes::scene::Spec;
-use depthplanes::{Detector, Error, Hessian, Ngaf};
+use depthplanes::{Detector, Error, HessianNormalForm, Ngaf};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -205,9 +205,9 @@ fn a_partition_of_no_pixel_has_no_measures() {
     assert_eq!(partition(&table(&[(0, 3, 1)])).unwrap().rand_index, 1.0);
 }
 
-fn plane(normal: [f64; 3], distance: f64) -> Hessian {
+fn plane(normal: [f64; 3], distance: f64) -> HessianNormalForm {
     let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
-    Hessian { normal: normal.map(|x| x / length), distance }
+    HessianNormalForm { normal: normal.map(|x| x / length), distance }
 }
 
 #[test]
@@ -267,7 +267,7 @@ fn the_angle_between_correct_neighbours_is_compared() {
 fn the_largest_planes_found_in_a_clean_scene_lie_where_they_are() {
     let frame = "room:sensor=clean_mm".parse::<Spec>().unwrap().frame().unwrap();
     let truth = &frame.truth;
-    let mut detector = Detector::new(Ngaf::default().theta(4.0).min(1000)).unwrap().sensor(frame.sensor);
+    let mut detector = Detector::new(Ngaf::default().theta(4.0).min_pixels(1000)).unwrap().sensor(frame.sensor);
     let detection = detector.detect(frame.view()).unwrap();
     let found = segcomp(&Contingency::new(&truth.labels, &detection.labels).unwrap(), Tolerance::default());
     let true_plane = |label: u16| truth.planes.get(usize::from(label) - 1).map(|plane| plane.plane);

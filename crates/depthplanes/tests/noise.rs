@@ -3,16 +3,16 @@
 use depthplanes::methods::Planar;
 use depthplanes::noise::{Estimate, Estimator, MAX_ROWS, NoiseModel, NoiseTable, Patch, SensorNoise};
 use depthplanes::scene::{Random, SensorError, SensorModel, Spec};
-use depthplanes::{DepthView, Detector, Error, Measure};
+use depthplanes::{DepthView, Detector, Error, ValueKind};
 
-const METRES: Measure = Measure::Depth { metres: 1.0 };
+const METRES: ValueKind = ValueKind::Depth { metres: 1.0 };
 
 /// The noise that so many seeds of a scene show together.
 fn estimate(spec: &str, seeds: u64) -> Estimate {
     let mut estimator = Estimator::default();
     for seed in 1..=seeds {
         let frame = format!("{spec},seed={seed}").parse::<Spec>().unwrap().frame().unwrap();
-        estimator.add(frame.view(), frame.sensor.measure).unwrap();
+        estimator.add(frame.view(), frame.sensor.value_kind).unwrap();
     }
     estimator.estimate().unwrap()
 }
@@ -46,9 +46,9 @@ fn estimates_are_within_a_quarter_of_the_generators_noise() {
 #[test]
 fn flat_and_slanted_maps_without_noise_have_none() {
     let (width, height) = (96, 72);
-    let of = |pixels: Vec<f32>, measure| {
+    let of = |pixels: Vec<f32>, value_kind| {
         let mut estimator = Estimator::default();
-        estimator.add(DepthView::new(&pixels, width, height).unwrap(), measure).unwrap();
+        estimator.add(DepthView::new(&pixels, width, height).unwrap(), value_kind).unwrap();
         let found = estimator.estimate().unwrap();
         assert!(found.wide_model().depth_sigma_m(2.0).is_none_or(f64::is_finite));
         found.noise
@@ -61,13 +61,13 @@ fn flat_and_slanted_maps_without_noise_have_none() {
     let slanted = |at: usize| 1.0 / (0.2 + 0.001 * (at % width) as f32 + 0.002 * (at / width) as f32);
     let slanted = depth(of((0..width * height).map(slanted).collect(), METRES));
     assert!(slanted < 1e-6, "{slanted}");
-    let SensorNoise::Value { sigma } = of(vec![20.0; width * height], Measure::Disparity) else {
+    let SensorNoise::Value { sigma } = of(vec![20.0; width * height], ValueKind::Disparity) else {
         panic!("disparity has its own")
     };
     assert!(sigma < 1e-12, "{sigma}");
     let mut estimator = Estimator::default();
     let whole: Vec<u16> = (0..width * height).map(|at| (900 + at % width / 20 + at / width / 9) as u16).collect();
-    estimator.add(DepthView::new(&whole, width, height).unwrap(), Measure::Disparity).unwrap();
+    estimator.add(DepthView::new(&whole, width, height).unwrap(), ValueKind::Disparity).unwrap();
     let SensorNoise::Value { sigma } = estimator.estimate().unwrap().noise else { panic!("disparity has its own") };
     assert!(sigma < 0.3, "rounding alone leaves {sigma} of a step");
 }
@@ -84,10 +84,10 @@ fn too_little_to_estimate_from_is_an_error() {
     assert_eq!(estimator.estimate(), too_few(0));
     estimator.add(DepthView::new(&[900u16; 12 * 24], 12, 24).unwrap(), METRES).unwrap();
     assert_eq!(estimator.estimate(), too_few(13));
-    let mixed = estimator.add(DepthView::new(&[9u8; 144], 12, 12).unwrap(), Measure::Disparity);
-    assert_eq!(mixed, Err(Error::MixedMeasures));
+    let mixed = estimator.add(DepthView::new(&[9u8; 144], 12, 12).unwrap(), ValueKind::Disparity);
+    assert_eq!(mixed, Err(Error::MixedValueKinds));
     for _ in 0..2 {
-        estimator.add(DepthView::new(&[9.0f32; 144], 12, 12).unwrap(), Measure::Depth { metres: 0.001 }).unwrap();
+        estimator.add(DepthView::new(&[9.0f32; 144], 12, 12).unwrap(), ValueKind::Depth { metres: 0.001 }).unwrap();
     }
     assert_eq!(estimator.estimate().unwrap().blocks, 21);
 }
@@ -96,11 +96,11 @@ fn too_little_to_estimate_from_is_an_error() {
 fn frames_in_which_a_third_is_missing_count_less_and_do_not_mislead() {
     let frame = "room:sensor=tof_white".parse::<Spec>().unwrap().frame().unwrap();
     let mut full = Estimator::default();
-    full.add(frame.view(), frame.sensor.measure).unwrap();
+    full.add(frame.view(), frame.sensor.value_kind).unwrap();
     let depthplanes::scene::ScenePixels::U16(mut pixels) = frame.pixels.clone() else { panic!("16 bits") };
     (0..pixels.len()).filter(|at| at % 640 / 24 % 3 == 0).for_each(|at| pixels[at] = 0);
     let mut holed = Estimator::default();
-    holed.add(DepthView::new(&pixels, frame.width, frame.height).unwrap(), frame.sensor.measure).unwrap();
+    holed.add(DepthView::new(&pixels, frame.width, frame.height).unwrap(), frame.sensor.value_kind).unwrap();
     let (full, holed) = (full.estimate().unwrap(), holed.estimate().unwrap());
     assert!(holed.blocks < full.blocks * 3 / 4);
     let ratio = holed.model().depth_sigma_m(3.0).unwrap() / full.model().depth_sigma_m(3.0).unwrap();
@@ -110,24 +110,27 @@ fn frames_in_which_a_third_is_missing_count_less_and_do_not_mislead() {
 #[test]
 fn the_four_kinds_of_noise_are_the_same_in_depth_and_in_disparity() {
     // 0.1 px of a rig of f T = 58 px m is 0.1 / 58 z^2 m, and 0.4 units of a quarter of a pixel.
-    let rig = Measure::stereo(0.25, 580.0, 0.1, 7.0).unwrap();
+    let rig = ValueKind::stereo(0.25, 580.0, 0.1, 7.0).unwrap();
     let (pixels, growth) = (SensorNoise::Value { sigma: 0.4 }, 0.1 / 58.0);
     let depth = SensorNoise::Depth { base: 0.0, growth };
     let rows: Vec<[f64; 2]> = (1..=16).map(|k| f64::from(k) * 0.5).map(|z| [z, growth * z * z]).collect();
     let table = SensorNoise::Table(NoiseTable::new(&rows).unwrap());
     for z in [0.5, 1.0, 2.5, 7.0, 8.0] {
         let sigma = growth * z * z;
-        for (measure, noise) in [
+        for (value_kind, noise) in [
             (rig, pixels),
             (rig, depth),
             (rig, table),
             (METRES, depth),
             (METRES, table),
-            (Measure::Depth { metres: 0.001 }, table),
+            (ValueKind::Depth { metres: 0.001 }, table),
         ] {
-            let model = NoiseModel::new(measure, noise, 0.0).unwrap();
+            let model = NoiseModel::new(value_kind, noise, 0.0).unwrap();
             let given = model.depth_sigma_m(z).unwrap();
-            assert!((given / sigma - 1.0).abs() < 1e-9, "{measure:?} {noise:?} at {z} m: {given} instead of {sigma}");
+            assert!(
+                (given / sigma - 1.0).abs() < 1e-9,
+                "{value_kind:?} {noise:?} at {z} m: {given} instead of {sigma}"
+            );
         }
         let q = rig.value(z).unwrap();
         let model = NoiseModel::new(rig, depth, 0.0).unwrap();
@@ -137,9 +140,9 @@ fn the_four_kinds_of_noise_are_the_same_in_depth_and_in_disparity() {
     let with_base = NoiseModel::new(METRES, SensorNoise::Depth { base: 0.001, growth: 0.002 }, 0.0).unwrap();
     assert!((with_base.depth_sigma_m(3.0).unwrap() - 0.019).abs() < 1e-12);
     assert_eq!(NoiseModel::new(METRES, pixels, 0.0), None);
-    assert_eq!(NoiseModel::new(Measure::Disparity, depth, 0.0), None);
-    assert_eq!(NoiseModel::new(Measure::Disparity, table, 0.0), None);
-    let unknown = NoiseModel::new(Measure::Disparity, pixels, 1.0).unwrap();
+    assert_eq!(NoiseModel::new(ValueKind::Disparity, depth, 0.0), None);
+    assert_eq!(NoiseModel::new(ValueKind::Disparity, table, 0.0), None);
+    let unknown = NoiseModel::new(ValueKind::Disparity, pixels, 1.0).unwrap();
     assert_eq!((unknown.sensor_sigma(9.0), unknown.depth_sigma_m(1.0)), (0.4, None));
 }
 
@@ -165,7 +168,7 @@ fn tables_hold_at_their_ends_and_refuse_what_is_none() {
 
 #[test]
 fn rounding_counts_by_how_many_pixels_share_it() {
-    let model = |sigma: f64| NoiseModel::new(Measure::Disparity, SensorNoise::Value { sigma }, 1.0).unwrap();
+    let model = |sigma: f64| NoiseModel::new(ValueKind::Disparity, SensorNoise::Value { sigma }, 1.0).unwrap();
     let patch = |gradient| Patch { gradient, extent: [200.0, 100.0], pixels: 15_000.0 };
     let twelfth = 1.0 / 12.0;
     // A flat patch is off by one and the same error, whatever its size.

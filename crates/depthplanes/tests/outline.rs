@@ -4,7 +4,7 @@ mod naive;
 
 use depthplanes::detection::{PixelBox, Plane};
 use depthplanes::outline::{Outline, Outliner, Outlines, Rectangle, Ring};
-use depthplanes::{DepthView, Detection, Detector, Error, Intrinsics, Measure, Ngaf, Sensor};
+use depthplanes::{DepthView, Detection, Detector, Error, Intrinsics, Ngaf, Sensor, ValueKind};
 use naive::Random;
 
 type Point = [f64; 2];
@@ -381,8 +381,8 @@ fn detect(
         if holds(u, v) && q > 0.0 { (1.0 / q) as f32 } else { 0.0 }
     };
     let map: Vec<f32> = (0..width * height).map(value).collect();
-    let sensor = Sensor::default().measure(Measure::Depth { metres: 1.0 }).intrinsics(Some(camera));
-    let mut detector = Detector::new(Ngaf::default().theta(1e6).min(3)).unwrap().sensor(sensor);
+    let sensor = Sensor::default().value_kind(ValueKind::Depth { metres: 1.0 }).intrinsics(Some(camera));
+    let mut detector = Detector::new(Ngaf::default().theta(1e6).min_pixels(3)).unwrap().sensor(sensor);
     (detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap().clone(), sensor)
 }
 
@@ -479,8 +479,8 @@ fn a_plane_that_reaches_infinity_has_no_area_and_no_outline_in_metres() {
     let (width, height) = (12, 9);
     let map: Vec<f32> = (0..width * height).map(|at| 0.2 + (at / width) as f32).collect();
     let camera = Intrinsics::new(50.0, 50.0, 6.0, -2.0).unwrap();
-    let measure = Measure::InverseDepth { slope: 0.1, offset: 0.0 };
-    let sensor = Sensor::default().measure(measure).intrinsics(Some(camera));
+    let value_kind = ValueKind::InverseDepth { slope: 0.1, offset: 0.0 };
+    let sensor = Sensor::default().value_kind(value_kind).intrinsics(Some(camera));
     let mut detector = Detector::new(Ngaf::default()).unwrap().sensor(sensor);
     let found = detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap();
     assert_eq!(found.planes[0].metric.unwrap().area_m2, None);

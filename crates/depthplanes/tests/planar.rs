@@ -4,7 +4,7 @@ use depthplanes::explanation::Verdict;
 use depthplanes::metrics::{Contingency, evops};
 use depthplanes::noise::{Estimator, SensorNoise};
 use depthplanes::scene::{Random, SceneFrame, ScenePixels, SensorModel, Spec, Truth};
-use depthplanes::{DepthView, Detection, Detector, Intrinsics, Measure, Ngaf, Planar, Sensor};
+use depthplanes::{DepthView, Detection, Detector, Intrinsics, Ngaf, Planar, Sensor, ValueKind};
 
 fn scene(spec: &str) -> SceneFrame {
     spec.parse::<Spec>().unwrap().frame().unwrap()
@@ -137,8 +137,8 @@ fn rooms_with_the_errors_of_real_cameras_are_found_for_the_most_part() {
         let rooms = Rooms::of(sensor, None, 20, Planar::default());
         rooms.print(sensor);
         let smooth = SensorModel::find(sensor).unwrap().error_at(2.0).smooth;
-        let stated = match scene(&format!("random:seed=1,sensor={sensor}")).sensor.measure {
-            Measure::InverseDepth { slope, .. } => Planar::default().smooth_noise(smooth / slope),
+        let stated = match scene(&format!("random:seed=1,sensor={sensor}")).sensor.value_kind {
+            ValueKind::InverseDepth { slope, .. } => Planar::default().smooth_noise(smooth / slope),
             _ => Planar::default().smooth_noise_growth(smooth),
         };
         Rooms::of(sensor, None, 20, stated).print(&format!("{sensor}, smooth part stated"));
@@ -169,7 +169,7 @@ fn planes_of_a_disparity_map_need_no_calibration() {
     // Two slanted planes that meet in column 60: 20 + u / 4 and 50 - u / 4.
     let disparity = |u: usize, v: usize| (200 + 4 * v + if u < 60 { 5 * u } else { 600 - 5 * u }) as u16;
     let map: Vec<u16> = (0..width * height).map(|at| disparity(at % width, at / width)).collect();
-    let sensor = Sensor::default().measure(Measure::Disparity);
+    let sensor = Sensor::default().value_kind(ValueKind::Disparity);
     let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
     let found = detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap();
     assert_eq!(found.planes.len(), 2);
@@ -234,7 +234,7 @@ fn a_slant_seen_along_rays_of_whole_pixels_is_one_plane_if_that_is_said() {
     let map: Vec<f32> = (0..160 * 120).map(|at| slant(at, random.between(-0.5, 0.5)) as f32).collect();
     let found = |ray: f64| {
         let stated = Planar::default().noise(0.05).lateral_noise(ray);
-        let sensor = Sensor::default().measure(Measure::Disparity);
+        let sensor = Sensor::default().value_kind(ValueKind::Disparity);
         let mut detector = Detector::new(stated).unwrap().sensor(sensor);
         let found = detector.detect(DepthView::new(&map, 160, 120).unwrap()).unwrap();
         found.planes.iter().map(|plane| plane.pixel_count).collect::<Vec<_>>()
@@ -253,7 +253,7 @@ fn a_slant_seen_along_rays_of_whole_pixels_is_one_plane_beside_a_wall_if_nothing
     let map: Vec<f32> = (0..160 * 120).map(|at| value(at) as f32).collect();
     let found = |noise: f64, ray: f64| {
         let stated = Planar::default().noise(noise).lateral_noise(ray);
-        let sensor = Sensor::default().measure(Measure::Disparity);
+        let sensor = Sensor::default().value_kind(ValueKind::Disparity);
         let mut detector = Detector::new(stated).unwrap().sensor(sensor);
         let found = detector.detect(DepthView::new(&map, 160, 120).unwrap()).unwrap();
         found.planes.iter().map(|plane| plane.pixel_count).collect::<Vec<_>>()
@@ -281,7 +281,7 @@ fn planes_that_are_grown_over_in_bands_are_whole() {
     let disparity = |at: usize| (100.0 + 0.02 * (at / width) as f64).min(60.0 + 0.04 * (at % width) as f64);
     let map: Vec<f32> = (0..width * height).map(|at| (disparity(at) + sigma * random.gaussian()) as f32).collect();
     for threads in [1, 3] {
-        let sensor = Sensor::default().measure(Measure::Disparity);
+        let sensor = Sensor::default().value_kind(ValueKind::Disparity);
         let mut detector = Detector::default().sensor(sensor).threads(threads);
         let found = detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap();
         assert_eq!(found.planes.len(), 2, "{threads} threads");
@@ -301,7 +301,7 @@ fn a_surface_seen_edge_on_is_no_plane_and_explain_says_so() {
     // In the middle, 2.5 columns on, a change of s at the seam is one of s / (1 + 2.5 s) of what is there.
     for (per_pixel, is_plane) in [(0.2, true), (2.0, false)] {
         let map = map(per_pixel);
-        let sensor = Sensor::default().measure(Measure::Depth { metres: 1.0 });
+        let sensor = Sensor::default().value_kind(ValueKind::Depth { metres: 1.0 });
         let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
         let view = DepthView::new(&map, width, height).unwrap();
         let label = detector.detect(view).unwrap().labels[32 * width + 66];
@@ -323,7 +323,7 @@ fn a_wall_behind_a_large_ball_stays_whole_without_any_noise() {
     };
     let map: Vec<u16> = (0..width * height).map(|at| (1000.0 * depth(at)).round() as u16).collect();
     let sensor = Sensor::default()
-        .measure(Measure::Depth { metres: 0.001 })
+        .value_kind(ValueKind::Depth { metres: 0.001 })
         .intrinsics(Some(Intrinsics::new(f, f, 319.5, 239.5).unwrap()));
     let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
     let found = detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap();
@@ -341,7 +341,7 @@ fn the_floor_below_a_low_camera_is_a_plane_however_coarse_the_picture() {
             if y > 0.0 && (near..8.0).contains(&z) { z as f32 } else { 0.0 }
         };
         let map: Vec<f32> = (0..width * height).map(depth).collect();
-        let sensor = Sensor::default().measure(Measure::Depth { metres: 1.0 });
+        let sensor = Sensor::default().value_kind(ValueKind::Depth { metres: 1.0 });
         let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
         let found = detector.detect(DepthView::new(&map, width, height).unwrap()).unwrap();
         assert_eq!(found.planes.len(), 1, "{width} x {height}");
@@ -360,7 +360,7 @@ fn values_too_small_for_a_depth_count_as_not_measured() {
         assert_eq!(detector.detect(view).unwrap().planes.len(), usize::from(share < 1.0), "{share}");
         detector.explain(view, [100, 100]).unwrap();
         let mut estimator = Estimator::default();
-        estimator.add(view, Measure::Depth { metres: 1.0 }).unwrap();
+        estimator.add(view, ValueKind::Depth { metres: 1.0 }).unwrap();
         assert_eq!(estimator.estimate().is_ok(), share < 1.0);
     }
 }

@@ -1,6 +1,6 @@
 //! Synthetic scenes: is the truth true, and do the sensors err as they say?
 
-use depthplanes::camera::Measure;
+use depthplanes::camera::ValueKind;
 use depthplanes::scene::{
     Camera, Place, Pose, SCENES, SENSORS, Scene, SceneFrame, ScenePixels, SensorModel, Spec, Surface, render,
 };
@@ -285,11 +285,11 @@ fn shadows_fall_to_the_left_of_near_things() {
 fn disparities_round_to_half_a_unit() {
     for scene in SCENES {
         let frame = frame(&format!("{}:sensor=disparity,size=320x240", scene.name));
-        let Measure::InverseDepth { slope, offset } = frame.sensor.measure else { panic!("disparity is affine") };
-        assert_eq!(Measure::stereo(0.25, 290.0, 0.1, 0.0).unwrap(), Measure::InverseDepth { slope, offset });
+        let ValueKind::InverseDepth { slope, offset } = frame.sensor.value_kind else { panic!("disparity is affine") };
+        assert_eq!(ValueKind::stereo(0.25, 290.0, 0.1, 0.0).unwrap(), ValueKind::InverseDepth { slope, offset });
         let mut measured = 0;
         for at in (0..320 * 240).filter(|&at| frame.value(at) > 0.0) {
-            let exact = frame.sensor.measure.value(frame.truth.depth_m[at]).unwrap();
+            let exact = frame.sensor.value_kind.value(frame.truth.depth_m[at]).unwrap();
             assert!((frame.value(at) - exact).abs() <= 0.5 + 1e-9, "{}: pixel {at}", scene.name);
             measured += 1;
         }

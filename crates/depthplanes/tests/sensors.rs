@@ -25,7 +25,7 @@ const RECORDED: [(SensorModel, f64, [f64; 5]); 5] = [
 
 /// A value of the map as inverse depth, 1/m.
 fn inverse_depth(frame: &SceneFrame, at: usize) -> f64 {
-    frame.sensor.measure.inverse_depth(frame.value(at)).expect("the pixel is measured")
+    frame.sensor.value_kind.inverse_depth(frame.value(at)).expect("the pixel is measured")
 }
 
 /// One plane's residuals in inverse depth, 1/m.

@@ -7,7 +7,7 @@
 //! A caller asks for memory with [`allocate`], writes the method's name and the pixels there, calls [`detect_u16`] or
 //! [`detect_f32`], reads the labels and gives the memory back with [`free`]. Only 32-bit numbers cross the border.
 
-use depthplanes::{AnyView, DepthView, Detector, Measure, Sensor, methods};
+use depthplanes::{AnyView, DepthView, Detector, ValueKind, Sensor, methods};
 use std::alloc::Layout;
 use std::slice::{from_raw_parts, from_raw_parts_mut};
 
@@ -119,7 +119,7 @@ unsafe fn given<'a, T>(
 /// The part without pointers. A program for frame after frame keeps the detector, which then allocates nothing.
 fn detect(name: &str, map: AnyView<'_>, metres: f64, labels: &mut [u16]) -> Result<usize, i32> {
     let method = methods::find(name).and_then(|method| method.with(&[])).or(Err(UNKNOWN_METHOD))?;
-    let sensor = Sensor::default().measure(Measure::depth(metres).or(Err(REFUSED))?);
+    let sensor = Sensor::default().value_kind(ValueKind::depth(metres).or(Err(REFUSED))?);
     let mut detector = Detector::new(method).or(Err(REFUSED))?.sensor(sensor);
     let found = detector.detect(map).or(Err(REFUSED))?;
     labels.copy_from_slice(&found.labels);

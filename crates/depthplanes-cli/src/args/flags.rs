@@ -196,7 +196,7 @@ pub(super) fn method_parameters(shown: &[&'static MethodInfo]) -> Vec<Arg> {
 }
 
 fn method_parameter(name: &'static str, shown: &[&'static MethodInfo]) -> Arg {
-    let flag = number(name, "NUMBER").long(flag_name(name)).help_heading(METHOD);
+    let flag = number(name, "NUMBER").long(flag_name(name)).aliases(aliases(name)).help_heading(METHOD);
     let owners: Vec<(&str, &Param)> = shown.iter().flat_map(|method| owned(method, name)).collect();
     let Some(&(_, first)) = owners.first() else {
         let all = METHODS.iter().flat_map(|method| owned(method, name)).collect::<Vec<_>>();
@@ -204,6 +204,14 @@ fn method_parameter(name: &'static str, shown: &[&'static MethodInfo]) -> Arg {
     };
     let alike = owners.len() == shown.len() && owners.iter().all(|(_, param)| says(param) == says(first));
     flag.help(sentences(&owners, alike))
+}
+
+/// The other names of a parameter, which are flags as well; its help says so.
+fn aliases(name: &str) -> Vec<&'static str> {
+    let all = METHODS.iter().flat_map(|method| owned(method, name));
+    let mut aliases: Vec<&str> = all.filter_map(|(_, param)| param.alias).collect();
+    aliases.dedup();
+    aliases
 }
 
 /// Meaning, unit and default.
@@ -226,7 +234,8 @@ fn sentences(owners: &[(&str, &Param)], alike: bool) -> String {
     }
     let sentence = |(methods, param): &(Vec<&str>, &Param)| {
         let whose = if alike { String::new() } else { format!("{}: ", methods.join(", ")) };
-        format!("{whose}{} [{}, default {}]", param.meaning, param.unit, param.default)
+        let alias = param.alias.map_or(String::new(), |alias| format!("; or --{}", flag_name(alias)));
+        format!("{whose}{} [{}, default {}{alias}]", param.meaning, param.unit, param.default)
     };
     meanings.iter().map(sentence).collect::<Vec<_>>().join(" ")
 }

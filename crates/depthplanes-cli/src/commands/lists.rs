@@ -31,7 +31,8 @@ pub(super) fn params(method: Option<&MethodInfo>, out: &mut dyn Write) -> Outcom
 
 fn param(param: &Param) -> Vec<String> {
     let source = param.source.unwrap_or("ours");
-    let flag = format!("--{}", param.name.replace('_', "-"));
+    let names = [Some(param.name), param.alias].into_iter().flatten();
+    let flag = names.map(|name| format!("--{}", name.replace('_', "-"))).collect::<Vec<_>>().join(", ");
     row([&flag, &param.default.to_string(), param.unit, &param.accepted(), source, param.meaning])
 }
 

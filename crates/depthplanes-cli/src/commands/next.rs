@@ -2,7 +2,7 @@
 
 use crate::args::Reading;
 use crate::terminal::plain;
-use depthplanes::Measure;
+use depthplanes::ValueKind;
 use depthplanes_io::Frame;
 use depthplanes_io::encoding::ENCODINGS;
 use depthplanes_io::inspect::Summary;
@@ -55,7 +55,7 @@ fn proposed(warning: &str) -> Option<Vec<String>> {
 /// What makes the planes metric.
 fn camera(frame: &Frame, encoding: &str) -> Vec<String> {
     let mut lines = vec!["for metres add the calibration of your camera:".to_string()];
-    if frame.sensor.measure == Measure::Disparity {
+    if frame.sensor.value_kind == ValueKind::Disparity {
         lines.push("  --baseline METRES with --intrinsics FX,FY,CX,CY, or --camera FILE".into());
     } else {
         lines.push("  --intrinsics FX,FY,CX,CY or --camera FILE".into());

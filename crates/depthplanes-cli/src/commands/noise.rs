@@ -9,7 +9,7 @@ use crate::inputs::Input;
 use crate::show::{length, significant};
 use crate::table::{Align, aligned, row};
 use crate::{inputs, load};
-use depthplanes::Measure;
+use depthplanes::ValueKind;
 use depthplanes::noise::{Estimate, Estimator, SensorNoise};
 use depthplanes_io::ReadOptions;
 use serde_json::{Value, json};
@@ -44,9 +44,9 @@ pub(super) fn run(wanted: &Inputs, reading: &Reading, as_json: bool, out: &mut d
 fn look(input: &Input, options: &ReadOptions, together: &mut Estimator) -> Outcome<Estimate> {
     let frame = load::frame(input, options)?;
     let mut alone = Estimator::default();
-    alone.add(frame.view()?, frame.sensor.measure)?;
+    alone.add(frame.view()?, frame.sensor.value_kind)?;
     let estimate = alone.estimate()?;
-    together.add(frame.view()?, frame.sensor.measure)?;
+    together.add(frame.view()?, frame.sensor.value_kind)?;
     Ok(estimate)
 }
 
@@ -73,7 +73,7 @@ fn estimate_record(estimate: &Estimate) -> Value {
         json!({"range_m": z, "sigma_m": white, "smooth_m": smooth, "wide_m": wide})
     };
     let mut record = json!({
-        "space": space(estimate.measure),
+        "space": space(estimate.value_kind),
         "blocks": estimate.blocks,
         "range": estimate.range,
         "step": estimate.step,
@@ -93,8 +93,8 @@ fn estimate_record(estimate: &Estimate) -> Value {
     record
 }
 
-fn space(measure: Measure) -> &'static str {
-    if matches!(measure, Measure::Depth { .. }) { "inverse_depth" } else { "value" }
+fn space(value_kind: ValueKind) -> &'static str {
+    if matches!(value_kind, ValueKind::Depth { .. }) { "inverse_depth" } else { "value" }
 }
 
 fn readable(found: &[(String, Estimate)], all: &Estimate) -> String {
@@ -105,14 +105,14 @@ fn readable(found: &[(String, Estimate)], all: &Estimate) -> String {
     }
     let mut columns = vec![Align::Right; rows[0].len()];
     columns[0] = Align::Left;
-    let what = match all.measure {
-        Measure::Depth { .. } => "depth, found in inverse depth; z is the range in metres",
-        Measure::InverseDepth { .. } => "the map's values, and of depth",
-        Measure::Disparity => "the map's values; --focal and --baseline tell what it is in depth",
+    let what = match all.value_kind {
+        ValueKind::Depth { .. } => "depth, found in inverse depth; z is the range in metres",
+        ValueKind::InverseDepth { .. } => "the map's values, and of depth",
+        ValueKind::Disparity => "the map's values; --focal and --baseline tell what it is in depth",
     };
-    let steps = match (all.step, all.measure) {
+    let steps = match (all.step, all.value_kind) {
         (0.0, _) => String::new(),
-        (step, Measure::Depth { metres }) => format!(" Rounding to steps of {} comes on top.", length(step * metres)),
+        (step, ValueKind::Depth { metres }) => format!(" Rounding to steps of {} comes on top.", length(step * metres)),
         (step, _) => format!(" Rounding to steps of {} map units comes on top.", significant(step)),
     };
     let mut text = aligned(&columns, &rows);
@@ -143,8 +143,8 @@ fn cells(name: &str, estimate: &Estimate) -> Vec<String> {
 /// What the blocks span: metres, or map units.
 fn range(estimate: &Estimate) -> String {
     let [low, high] = estimate.range;
-    match estimate.measure {
-        Measure::Depth { .. } => format!("{:.1} to {:.1} m", high.recip(), low.recip()),
+    match estimate.value_kind {
+        ValueKind::Depth { .. } => format!("{:.1} to {:.1} m", high.recip(), low.recip()),
         _ => format!("{} to {}", significant(low), significant(high)),
     }
 }

@@ -1,6 +1,7 @@
 //! What a method made of a map, as a line of JSON; and the file of such lines that an interrupted evaluation goes on from.
 
 use crate::failure::{Failure, Outcome, note};
+use depthplanes::methods;
 use depthplanes_io::outputs::write_file;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashMap};
@@ -88,7 +89,8 @@ impl Store {
         let (mut rows, mut whole, mut torn) = (HashMap::new(), Vec::new(), Vec::new());
         for (number, line) in (1..).zip(bytes.split_inclusive(|&byte| byte == b'\n')) {
             match serde_json::from_slice::<Row>(line) {
-                Ok(row) => {
+                Ok(mut row) => {
+                    row.key.parameters = by_names(&row.key);
                     whole.extend([line.trim_ascii_end(), b"\n"].concat());
                     rows.insert(row.key.clone(), row);
                 }
@@ -147,6 +149,19 @@ impl Store {
     }
 }
 
+/// The parameters of a row by their names: those that are written by an alias, and a method's of another program as they are.
+fn by_names(Key { method, parameters, .. }: &Key) -> String {
+    let Ok(method) = methods::find(method) else { return parameters.clone() };
+    let by_name = |one: &str| match one.split_once(' ') {
+        Some((name, value)) => {
+            let name = method.position(name).map_or(name, |at| method.params[at].name);
+            format!("{name} {value}")
+        }
+        None => one.to_string(),
+    };
+    parameters.split(", ").map(by_name).collect::<Vec<_>>().join(", ")
+}
+
 /// Where torn lines of a file go: `rows.torn.jsonl` for `rows.jsonl`.
 fn beside(path: &Path) -> PathBuf {
     path.with_extension("torn.jsonl")
@@ -171,6 +186,25 @@ mod tests {
         let key = Key { dataset, map: map.into(), label, method, parameters: String::new(), version, repeat: 1 };
         let outcome = Made::Refused("no camera".into());
         Row { key, machine: String::new(), date: String::new(), jobs: 1, size: [4, 3], valid_pixels: 12, outcome }
+    }
+
+    #[test]
+    fn a_row_that_names_a_parameter_by_its_alias_is_that_of_its_name() {
+        let folder = std::env::temp_dir().join(format!("depthplanes-alias-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("rows.jsonl");
+        let of = |method: &str, parameters: &str| {
+            let (method, parameters) = (method.to_string(), parameters.to_string());
+            Row { key: Key { method, parameters, ..row("a").key }, ..row("a") }
+        };
+        let mut store = Store::open(&path).unwrap();
+        store.add(of("ngaf", "theta 1, min 32")).unwrap();
+        store.add(of("somebody's", "theta 1, min 32, of this kind")).unwrap();
+        drop(store);
+        let store = Store::open(&path).unwrap();
+        assert!(store.get(&of("ngaf", "theta 1, min-pixels 32").key).is_some());
+        assert!(store.get(&of("somebody's", "theta 1, min 32, of this kind").key).is_some());
+        std::fs::remove_dir_all(&folder).unwrap();
     }
 
     #[test]

@@ -168,13 +168,13 @@ mod tests {
     use super::*;
 
     fn key(dataset: &str, map: &str) -> Key {
-        let [method, parameters, version] = ["planar", "min 100", "v"].map(str::to_string);
+        let [method, parameters, version] = ["planar", "min-pixels 100", "v"].map(str::to_string);
         Key { dataset: dataset.into(), map: map.into(), label: method.clone(), method, parameters, version, repeat: 1 }
     }
 
     #[test]
     fn every_map_has_a_label_file_of_its_own_and_plain_names_are_as_they_are() {
-        assert_eq!(labels_name(&key("scenes", "room-1.a_b")), "scenes.room-1.a_b.planar.648729ec.png");
+        assert_eq!(labels_name(&key("scenes", "room-1.a_b")), "scenes.room-1.a_b.planar.9e2b4020.png");
         let long = "x".repeat(240);
         let other = format!("{long}y");
         let maps =

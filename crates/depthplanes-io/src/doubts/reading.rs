@@ -3,7 +3,7 @@
 //! Planes are affine in inverse depth. Read in another way they bend, and fall into pieces or are lost. So where little
 //! of a map is planes, the other readings are tried.
 
-use depthplanes::{Detection, Detector, Measure, Planar, Sensor};
+use depthplanes::{Detection, Detector, Planar, Sensor, ValueKind};
 
 use crate::frame::{Frame, Pixels};
 use crate::outputs::Report;
@@ -48,17 +48,17 @@ pub(super) fn better(report: &Report<'_>) -> Option<String> {
         format!("{now:.0} % of the valid pixels lie on planes, but {then:.0} % if {advice}")
     };
     let nearer_below = is_larger_below(frame)?;
-    match frame.sensor.measure {
-        Measure::Depth { .. } if frame.provenance.ray_distance => {
+    match frame.sensor.value_kind {
+        ValueKind::Depth { .. } if frame.provenance.ray_distance => {
             let mut distances = frame.clone();
             ray_distance::to_distance(&mut distances);
             let score = score(&distances, distances.sensor)?;
             score.beats(&as_read).then(|| told(score, "they are depths already: leave --ray-distance out"))
         }
-        Measure::Depth { .. } => {
+        ValueKind::Depth { .. } => {
             let along_rays = as_ray_distance(frame).filter(|score| score.beats(&as_read));
             // Most pictures have what is near below. Where large values are, they are near if they are inverse depth.
-            let inverse = nearer_below.then(|| with(frame, Measure::Disparity)).flatten();
+            let inverse = nearer_below.then(|| with(frame, ValueKind::Disparity)).flatten();
             let inverse = inverse.filter(|score| score.beats(&as_read));
             match (along_rays, inverse) {
                 (along, Some(score)) if along.is_none_or(|along| score.together > along.together) => Some(told(
@@ -69,8 +69,8 @@ pub(super) fn better(report: &Report<'_>) -> Option<String> {
                 _ => None,
             }
         }
-        Measure::Disparity if frame.format == "pfm" && frame.provenance.is_guess() && !nearer_below => {
-            let score = with(frame, Measure::Depth { metres: 1.0 })?;
+        ValueKind::Disparity if frame.format == "pfm" && frame.provenance.is_guess() && !nearer_below => {
+            let score = with(frame, ValueKind::Depth { metres: 1.0 })?;
             score.beats(&as_read).then(|| told(score, "they are depth: try --encoding metre or millimetre"))
         }
         _ => None,
@@ -78,8 +78,8 @@ pub(super) fn better(report: &Report<'_>) -> Option<String> {
 }
 
 /// The frame read in another way.
-fn with(frame: &Frame, measure: Measure) -> Option<Score> {
-    score(frame, frame.sensor.measure(measure).noise(None).smooth_noise(None))
+fn with(frame: &Frame, value_kind: ValueKind) -> Option<Score> {
+    score(frame, frame.sensor.value_kind(value_kind).noise(None).smooth_noise(None))
 }
 
 fn as_ray_distance(frame: &Frame) -> Option<Score> {

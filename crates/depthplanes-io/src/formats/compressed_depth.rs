@@ -9,7 +9,7 @@
 //! `q` of 1 to 150 and a farthest depth of 1 to 100 m; 16UC1 leaves whatever memory held, mostly 0 or a tiny
 //! number. So they are taken where both are numbers that make depths of all the values, within wider bounds.
 
-use depthplanes::Measure;
+use depthplanes::ValueKind;
 
 use super::bytes::Cursor;
 use super::format::{DecodeOptions, Format, Image};
@@ -82,7 +82,7 @@ fn explains(a: f64, b: f64, pixels: &Pixels) -> bool {
 ///
 /// # Errors
 /// [`Error::Unreadable`] if the header is short or A and B are not usable: a 16UC1 payload.
-pub fn inverse_depth_measure(bytes: &[u8]) -> Result<Measure> {
+pub fn inverse_depth_value_kind(bytes: &[u8]) -> Result<ValueKind> {
     let [a, b] = parameters(bytes).ok_or_else(|| unreadable("fewer than 12 bytes"))?;
     quantised_inverse_depth(a, b)
 }
@@ -91,9 +91,9 @@ pub fn inverse_depth_measure(bytes: &[u8]) -> Result<Measure> {
 ///
 /// # Errors
 /// [`Error::Unreadable`] if A is not above 0, or A or B is not finite.
-pub fn quantised_inverse_depth(a: f64, b: f64) -> Result<Measure> {
+pub fn quantised_inverse_depth(a: f64, b: f64) -> Result<ValueKind> {
     if !(a.is_finite() && a > 0.0 && b.is_finite()) {
         return Err(unreadable(&format!("A = {a}, B = {b} describe no inverse depth")));
     }
-    Ok(Measure::InverseDepth { slope: 1.0 / a, offset: -b / a })
+    Ok(ValueKind::InverseDepth { slope: 1.0 / a, offset: -b / a })
 }

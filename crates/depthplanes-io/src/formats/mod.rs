@@ -30,7 +30,7 @@ mod spread;
 mod tiff;
 mod unsupported;
 
-pub use compressed_depth::{inverse_depth_measure, quantised_inverse_depth};
+pub use compressed_depth::{inverse_depth_value_kind, quantised_inverse_depth};
 pub use format::{DecodeOptions, Format, Image, Limits};
 pub use raw::raw_types;
 pub(crate) use spread::bytes as bytes_of_channels;

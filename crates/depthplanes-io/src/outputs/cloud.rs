@@ -38,14 +38,14 @@ const POINT_BYTES: usize = 3 * 4 + 3 + 2;
 
 fn points(report: &Report<'_>) -> Result<Vec<u8>, OutputError> {
     let sensor = report.metric_sensor()?;
-    let measure = sensor.measure;
-    let greys = shade::greys(report.frame.view()?, report.frame.sensor.measure);
+    let value_kind = sensor.value_kind;
+    let greys = shade::greys(report.frame.view()?, report.frame.sensor.value_kind);
     let labels = &report.detection.labels;
     let palette = palette(report.detection.planes.len());
     let width = report.frame.width;
     let mut bytes = Vec::with_capacity(labels.len() * POINT_BYTES);
     let mut add = |at: usize, value: f64| {
-        let Some(z) = measure.depth_m(value) else { return };
+        let Some(z) = value_kind.depth_m(value) else { return };
         let Some(ray) = sensor.ray((at % width) as f64, (at / width) as f64) else { return };
         let point = ray.map(|r| (r * z) as f32);
         if !point.iter().all(|x| x.is_finite()) {

@@ -4,7 +4,7 @@ use super::colour::colour;
 use super::depth::depth_m;
 use super::font;
 use super::picture::Picture;
-use depthplanes::{Detection, Measure, Plane};
+use depthplanes::{Detection, Plane, ValueKind};
 
 const PAPER: [u8; 3] = [38, 38, 44];
 const INK: [u8; 3] = [232, 232, 232];
@@ -15,8 +15,8 @@ const TALL: usize = 360;
 const FEWEST_ROWS: usize = 6;
 
 /// The picture with the legend at its right.
-pub(super) fn beside(picture: &Picture, detection: &Detection, measure: Measure) -> Picture {
-    let layout = Layout::of(picture.height, detection, measure);
+pub(super) fn beside(picture: &Picture, detection: &Detection, value_kind: ValueKind) -> Picture {
+    let layout = Layout::of(picture.height, detection, value_kind);
     let mut whole = Picture::filled(picture.width + layout.width, picture.height.max(layout.height), PAPER);
     whole.paste(picture, [0, 0]);
     layout.draw(&mut whole, picture.width);
@@ -42,9 +42,9 @@ struct Layout {
 }
 
 impl Layout {
-    fn of(picture_height: usize, detection: &Detection, measure: Measure) -> Layout {
+    fn of(picture_height: usize, detection: &Detection, value_kind: ValueKind) -> Layout {
         let scale = letter_scale(picture_height);
-        let rows = rows(planes_that_fit(picture_height, scale), detection, measure);
+        let rows = rows(planes_that_fit(picture_height, scale), detection, value_kind);
         let widest = |column: usize| rows.iter().map(|row| font::width(&row.cells[column], scale)).max().unwrap_or(0);
         let columns = std::array::from_fn(widest);
         let gap = |column: &usize| if *column == 0 { 0 } else { column + 2 * font::ADVANCE * scale };
@@ -99,14 +99,14 @@ fn planes_named(fitting: usize, detection: &Detection) -> usize {
     if planes > fitting { fitting - 1 } else { planes }
 }
 
-fn rows(fitting: usize, detection: &Detection, measure: Measure) -> Vec<Row> {
+fn rows(fitting: usize, detection: &Detection, value_kind: ValueKind) -> Vec<Row> {
     let planes = &detection.planes;
     let named = planes_named(fitting, detection);
     let told = |text: String| Row { swatch: None, cells: [String::new(), text, String::new(), String::new()] };
     if planes.is_empty() {
         return vec![told("no planes".into())];
     }
-    let mut rows: Vec<Row> = planes[..named].iter().map(|plane| row(plane, measure)).collect();
+    let mut rows: Vec<Row> = planes[..named].iter().map(|plane| row(plane, value_kind)).collect();
     // A column of which nothing is known has no heading.
     let heads = |column: usize| column < 2 || rows.iter().any(|row| !row.cells[column].is_empty());
     let heading = std::array::from_fn(|column| if heads(column) { HEADING[column].into() } else { String::new() });
@@ -117,10 +117,10 @@ fn rows(fitting: usize, detection: &Detection, measure: Measure) -> Vec<Row> {
     rows
 }
 
-fn row(plane: &Plane, measure: Measure) -> Row {
+fn row(plane: &Plane, value_kind: ValueKind) -> Row {
     let metres = |length: Option<f64>| length.map(|metres| format!("{metres:.2} m")).unwrap_or_default();
     let distance = plane.metric.map(|metric| metric.plane.distance);
-    let depth = metres(depth_m(plane, measure));
+    let depth = metres(depth_m(plane, value_kind));
     Row {
         swatch: Some(colour(plane.label)),
         cells: [plane.label.to_string(), plane.pixel_count.to_string(), depth, metres(distance)],

@@ -8,7 +8,7 @@ use super::times::Times;
 use crate::frame::Frame;
 use depthplanes::methods::MethodInfo;
 use depthplanes::outline::Outlines;
-use depthplanes::{Coplanar, Detection, Measure, Sensor};
+use depthplanes::{Coplanar, Detection, Sensor, ValueKind};
 use std::path::Path;
 
 /// One row of [`OUTPUTS`](super::OUTPUTS).
@@ -20,7 +20,7 @@ pub struct Output {
     pub about: &'static str,
     /// What follows the input's stem in a folder of results: `<stem>.<file>`.
     pub file: &'static str,
-    /// Whether it needs a metric measure and intrinsics.
+    /// Whether it needs a metric value kind and intrinsics.
     pub needs_camera: bool,
     /// Whether it needs curved regions, which are looked for on request alone.
     pub needs_curved: bool,
@@ -114,7 +114,7 @@ impl<'a> Report<'a> {
         has_curved && (self.is_metric() || !output.needs_camera)
     }
 
-    /// Whether points and planes can be given in metres: the measure is metric and the camera known.
+    /// Whether points and planes can be given in metres: the value kind is metric and the camera known.
     pub fn is_metric(&self) -> bool {
         self.metric_sensor().is_ok()
     }
@@ -122,10 +122,10 @@ impl<'a> Report<'a> {
     /// The sensor, for outputs in metres.
     ///
     /// # Errors
-    /// [`OutputError::NeedsCamera`] unless the measure is metric and the camera known.
+    /// [`OutputError::NeedsCamera`] unless the value kind is metric and the camera known.
     pub(super) fn metric_sensor(&self) -> Result<Sensor, OutputError> {
         let sensor = self.frame.sensor;
-        if sensor.measure == Measure::Disparity {
+        if sensor.value_kind == ValueKind::Disparity {
             let missing = "to know what the disparities mean: give --focal and --baseline of the rig";
             return Err(OutputError::NeedsCamera { missing });
         }

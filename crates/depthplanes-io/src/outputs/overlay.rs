@@ -58,14 +58,14 @@ fn picture(report: &Report<'_>) -> Result<Picture, OutputError> {
     let mut picture = tinted(frame.view()?, &frame.sensor, detection, *outlines);
     if report.legend {
         legend::number_planes(&mut picture, detection);
-        picture = legend::beside(&picture, detection, frame.sensor.measure);
+        picture = legend::beside(&picture, detection, frame.sensor.value_kind);
     }
     Ok(picture)
 }
 
 /// The map in grey and over it what was found.
 fn tinted(map: AnyView<'_>, sensor: &Sensor, detection: &Detection, outlines: Option<&Outlines>) -> Picture {
-    let pixels = shade::greys(map, sensor.measure);
+    let pixels = shade::greys(map, sensor.value_kind);
     let mut picture = Picture { width: detection.width, height: detection.height, pixels };
     tint_planes(&mut picture, detection, outlines.is_none());
     if let Some(curved) = &detection.curved {

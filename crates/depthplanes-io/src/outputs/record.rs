@@ -6,7 +6,7 @@ use super::output::Report;
 use super::times::{Spread, Times};
 use depthplanes::detection::{CurvedRegion, PixelBox};
 use depthplanes::methods::ParamKind;
-use depthplanes::{Coplanar, Distortion, Intrinsics, Measure, Plane};
+use depthplanes::{Coplanar, Distortion, Intrinsics, Plane, ValueKind};
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
@@ -27,7 +27,8 @@ pub(super) struct FrameRecord<'a> {
     valid_range: Option<(f64, f64)>,
     width: usize,
     height: usize,
-    measure: MeasureRecord,
+    /// The value kind.
+    measure: ValueKindRecord,
     intrinsics: Option<IntrinsicsRecord>,
     #[serde(skip_serializing_if = "Option::is_none")]
     distortion: Option<DistortionRecord>,
@@ -54,7 +55,7 @@ pub(super) struct FrameRecord<'a> {
 
 #[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
-enum MeasureRecord {
+enum ValueKindRecord {
     Depth { metres_per_unit: f64 },
     InverseDepth { slope_per_m: f64, offset_per_m: f64 },
     Disparity,
@@ -145,7 +146,7 @@ impl<'a> From<&Report<'a>> for FrameRecord<'a> {
             valid_range: frame.valid_range,
             width: frame.width,
             height: frame.height,
-            measure: frame.sensor.measure.into(),
+            measure: frame.sensor.value_kind.into(),
             intrinsics: frame.sensor.intrinsics.map(IntrinsicsRecord::from),
             distortion: frame.sensor.distortion.map(DistortionRecord::from),
             method: report.method.name,
@@ -184,14 +185,14 @@ fn times(times: &Times) -> Map<String, Value> {
     all
 }
 
-impl From<Measure> for MeasureRecord {
-    fn from(measure: Measure) -> Self {
-        match measure {
-            Measure::Depth { metres } => MeasureRecord::Depth { metres_per_unit: metres },
-            Measure::InverseDepth { slope, offset } => {
-                MeasureRecord::InverseDepth { slope_per_m: slope, offset_per_m: offset }
+impl From<ValueKind> for ValueKindRecord {
+    fn from(value_kind: ValueKind) -> Self {
+        match value_kind {
+            ValueKind::Depth { metres } => ValueKindRecord::Depth { metres_per_unit: metres },
+            ValueKind::InverseDepth { slope, offset } => {
+                ValueKindRecord::InverseDepth { slope_per_m: slope, offset_per_m: offset }
             }
-            Measure::Disparity => MeasureRecord::Disparity,
+            ValueKind::Disparity => ValueKindRecord::Disparity,
         }
     }
 }

@@ -4,7 +4,7 @@
 //! structured light is even. The range runs from the 2nd to the 98th percentile, so that a few
 //! wild pixels do not flatten the rest.
 
-use depthplanes::{AnyView, Measure, with_view};
+use depthplanes::{AnyView, ValueKind, with_view};
 
 /// Missing pixels: darker than any depth, and slightly blue so as to differ from far.
 pub(super) const MISSING: [u8; 3] = [14, 14, 24];
@@ -13,8 +13,8 @@ const FAR: f32 = 52.0;
 const NEAR: f32 = 208.0;
 
 /// The shade of each pixel of a map whose numbers mean that, row by row.
-pub(super) fn greys(map: AnyView<'_>, measure: Measure) -> Vec<[u8; 3]> {
-    let nearness = nearness(map, measure);
+pub(super) fn greys(map: AnyView<'_>, value_kind: ValueKind) -> Vec<[u8; 3]> {
+    let nearness = nearness(map, value_kind);
     let (low, high) = robust_range(&nearness);
     let scale = if high > low { (NEAR - FAR) / (high - low) } else { 0.0 };
     let middle = if high > low { 0.0 } else { (NEAR - FAR) / 2.0 };
@@ -28,10 +28,10 @@ pub(super) fn greys(map: AnyView<'_>, measure: Measure) -> Vec<[u8; 3]> {
 }
 
 /// A number for each pixel that grows with inverse depth; NaN where the pixel is missing.
-fn nearness(map: AnyView<'_>, measure: Measure) -> Vec<f32> {
-    let near = |value: f64| match measure {
-        Measure::Disparity => value as f32,
-        _ => measure.inverse_depth(value).map_or(f32::NAN, |inverse| inverse as f32),
+fn nearness(map: AnyView<'_>, value_kind: ValueKind) -> Vec<f32> {
+    let near = |value: f64| match value_kind {
+        ValueKind::Disparity => value as f32,
+        _ => value_kind.inverse_depth(value).map_or(f32::NAN, |inverse| inverse as f32),
     };
     with_view!(map, view => {
         let valid = view.validity();

@@ -15,7 +15,7 @@ use crate::frame::Frame;
 /// # Panics
 /// If there are fewer labels than pixels.
 pub fn tinted_png(frame: &Frame, labels: &[u16], rest: Option<[u8; 3]>, width: usize) -> Result<Vec<u8>, OutputError> {
-    let mut greys = shade::greys(frame.view()?, frame.sensor.measure);
+    let mut greys = shade::greys(frame.view()?, frame.sensor.value_kind);
     if let Some(rest) = rest {
         let is_rest = |(grey, label): &(&mut [u8; 3], &u16)| **label == 0 && **grey != shade::MISSING;
         greys.iter_mut().zip(labels).filter(is_rest).for_each(|(grey, _)| *grey = rest);
@@ -47,7 +47,7 @@ const LETTER: usize = 2;
 /// # Panics
 /// If a tile has fewer labels than the map has pixels.
 pub fn side_by_side(frame: &Frame, tiles: &[Tile<'_>], width: usize) -> Result<Vec<u8>, OutputError> {
-    let greys = shade::greys(frame.view()?, frame.sensor.measure);
+    let greys = shade::greys(frame.view()?, frame.sensor.value_kind);
     let pictures: Vec<Picture> = tiles.iter().map(|tile| tinted(frame, &greys, tile.labels, width)).collect();
     let (columns, rows) = pictures.first().map_or((0, 0), |picture| (picture.width, picture.height));
     let (step_u, step_v) = (columns + GAP, rows + GAP + (font::HEIGHT + 4) * LETTER);

@@ -1,6 +1,6 @@
 //! Values that stand for "nothing measured": named, and left out where they cannot be a measurement.
 
-use depthplanes::Measure;
+use depthplanes::ValueKind;
 
 use super::probe::{FEW, Probe, is_small, percent};
 use crate::frame::{Frame, Pixels};
@@ -17,8 +17,8 @@ const SHARE: f64 = 0.005;
 
 /// The value of a map that no sensor measures but programs write for "nothing there", with a note, if the user said
 /// nothing of missing values.
-pub(crate) fn not_measured(pixels: &Pixels, measure: Measure) -> Option<(f64, String)> {
-    let is_depth = matches!(measure, Measure::Depth { .. });
+pub(crate) fn not_measured(pixels: &Pixels, value_kind: ValueKind) -> Option<(f64, String)> {
+    let is_depth = matches!(value_kind, ValueKind::Depth { .. });
     let (value, count, what) = match pixels {
         Pixels::U16(values) if is_depth => (f64::from(u16::MAX), count(values, u16::MAX), "the largest of 16 bits"),
         Pixels::U16(values) => (f64::from(MINUS_16), count(values, MINUS_16), "-16 of a stereo matcher in 16 bits"),
@@ -60,7 +60,7 @@ fn shown(value: f64) -> String {
 
 /// One largest value that fills a part of the map: a renderer's far clip, or a background.
 pub(super) fn far_clip(frame: &Frame, probe: &Probe) -> Option<String> {
-    let Measure::Depth { metres } = frame.sensor.measure else { return None };
+    let ValueKind::Depth { metres } = frame.sensor.value_kind else { return None };
     let (largest, count) = probe.largest()?;
     let share = count as f64 / probe.pixels as f64;
     let others = &probe.valid[..probe.valid.len() - count];

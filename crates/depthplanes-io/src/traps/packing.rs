@@ -1,6 +1,6 @@
 //! Packed bits and bytes, and numbers that another program scales.
 
-use depthplanes::Measure;
+use depthplanes::ValueKind;
 
 use super::probe::{FEW, Probe};
 use crate::frame::{Frame, Pixels};
@@ -19,7 +19,7 @@ pub(super) fn swapped(frame: &Frame, probe: &Probe) -> Option<String> {
 
 /// A Kinect's raw disparity, 11 bits with 2047 for nothing, taken for millimetres.
 pub(super) fn kinect_raw(frame: &Frame, probe: &Probe) -> Option<String> {
-    let (Pixels::U16(_), Measure::Depth { .. }) = (&frame.pixels, frame.sensor.measure) else { return None };
+    let (Pixels::U16(_), ValueKind::Depth { .. }) = (&frame.pixels, frame.sensor.value_kind) else { return None };
     let (largest, count) = probe.largest()?;
     let next = probe.valid[..probe.valid.len() - count].last()?;
     let is_raw = largest == 2047.0 && count * 200 > probe.pixels && (300.0..1_200.0).contains(next);
@@ -34,7 +34,7 @@ pub(super) fn kinect_raw(frame: &Frame, probe: &Probe) -> Option<String> {
 pub(super) fn grey_levels(frame: &Frame, probe: &Probe) -> Option<String> {
     let Pixels::U16(_) = frame.pixels else { return None };
     let (largest, _) = probe.largest()?;
-    let is_depth = matches!(frame.sensor.measure, Measure::Depth { .. });
+    let is_depth = matches!(frame.sensor.value_kind, ValueKind::Depth { .. });
     (is_depth && largest < 256.0 && probe.valid.len() >= FEW)
         .then(|| format!("16 bits but no value above {largest}: grey levels or labels? try --encoding grey"))
 }
@@ -45,7 +45,7 @@ const FAR_MM: f64 = 4500.0;
 
 /// Millimetres that are multiples of 257, 8, 10 or 5.
 pub(super) fn multiples(frame: &Frame, probe: &Probe) -> Option<String> {
-    let is_millimetres = frame.sensor.measure == Measure::Depth { metres: 0.001 };
+    let is_millimetres = frame.sensor.value_kind == ValueKind::Depth { metres: 0.001 };
     if !probe.is_integer || !is_millimetres || frame.encoding != "millimetre" || probe.levels().len() < 8 {
         return None;
     }

@@ -1,6 +1,6 @@
 //! Pictures that are no depth maps: label images, and pictures of 8 bits.
 
-use depthplanes::Measure;
+use depthplanes::ValueKind;
 
 use super::probe::{FEW, Probe, is_small};
 use crate::frame::{Frame, Pixels};
@@ -9,7 +9,7 @@ use crate::frame::{Frame, Pixels};
 pub(super) fn labels(frame: &Frame, probe: &Probe) -> Option<String> {
     let levels = probe.levels();
     // Disparity of whole pixels has few values, too.
-    let may_be = matches!(frame.sensor.measure, Measure::Depth { .. }) || frame.encoding == "grey";
+    let may_be = matches!(frame.sensor.value_kind, ValueKind::Depth { .. }) || frame.encoding == "grey";
     if is_small(frame) || !probe.is_integer || !may_be || !(2..64).contains(&levels.len()) {
         return None;
     }
@@ -38,8 +38,8 @@ pub(super) fn eight_bits(frame: &Frame, _: &Probe) -> Option<String> {
                 .into(),
         );
     }
-    let metres = match frame.sensor.measure {
-        Measure::Depth { metres } => metres,
+    let metres = match frame.sensor.value_kind {
+        ValueKind::Depth { metres } => metres,
         _ => return None,
     };
     let is_coarse = matches!(frame.pixels, Pixels::U8(_)) && metres * 255.0 < 0.3;
@@ -55,7 +55,7 @@ const GROWS: f64 = 1.3;
 
 /// Values that grow towards the bottom of the picture, taken for depth by a guess.
 pub(super) fn grows_below(frame: &Frame, probe: &Probe) -> Option<String> {
-    let Measure::Depth { .. } = frame.sensor.measure else { return None };
+    let ValueKind::Depth { .. } = frame.sensor.value_kind else { return None };
     let times = probe.below_to_above.filter(|&times| times > GROWS)?;
     (frame.provenance.is_guess() && !is_small(frame) && probe.levels().len() > 32).then(|| {
         format!(
@@ -67,7 +67,7 @@ pub(super) fn grows_below(frame: &Frame, probe: &Probe) -> Option<String> {
 
 /// Values over the whole range of a type, as programs make that scale relative depth for a picture.
 pub(super) fn whole_range(frame: &Frame, probe: &Probe) -> Option<String> {
-    let Measure::Depth { .. } = frame.sensor.measure else { return None };
+    let ValueKind::Depth { .. } = frame.sensor.value_kind else { return None };
     let (lowest, (largest, _)) = (probe.valid.first()?, probe.largest()?);
     let is_whole = match frame.pixels {
         Pixels::U8(_) => return None,

@@ -1,6 +1,6 @@
 //! Metres for millimetres and the other way round, wherever the unit comes from.
 
-use depthplanes::Measure;
+use depthplanes::ValueKind;
 
 use super::probe::{FEW, Probe};
 use crate::frame::Frame;
@@ -17,7 +17,7 @@ pub(super) fn median(frame: &Frame, probe: &Probe) -> Option<String> {
         return None;
     }
     let median = probe.median()?;
-    if let (Measure::InverseDepth { slope, .. }, Some(rig)) = (frame.sensor.measure, frame.provenance.stereo) {
+    if let (ValueKind::InverseDepth { slope, .. }, Some(rig)) = (frame.sensor.value_kind, frame.provenance.stereo) {
         let (pixels, width) = (median * slope * rig.focal_px * rig.baseline_m, frame.width);
         if pixels > width as f64 {
             return Some(format!(
@@ -26,7 +26,7 @@ pub(super) fn median(frame: &Frame, probe: &Probe) -> Option<String> {
             ));
         }
     }
-    let median_m = frame.sensor.measure.depth_m(median)?;
+    let median_m = frame.sensor.value_kind.depth_m(median)?;
     if let Some(doubt) = doubt_of_depth(frame, median_m) {
         return Some(format!("the median depth would be {}: {doubt}", length(median_m)));
     }
@@ -48,8 +48,8 @@ pub(crate) fn doubt_of_depth(frame: &Frame, depth_m: f64) -> Option<String> {
 fn remedy(frame: &Frame, depth_m: f64) -> String {
     let from = &frame.provenance;
     let is_likely = |factor: f64| LIKELY_M.contains(&(depth_m * factor));
-    match frame.sensor.measure {
-        Measure::Depth { metres } => {
+    match frame.sensor.value_kind {
+        ValueKind::Depth { metres } => {
             if let Some(scale) = from.scale {
                 // A scale the other way up, or of millimetres instead of metres.
                 if is_likely(scale * scale) {
@@ -68,7 +68,7 @@ fn remedy(frame: &Frame, depth_m: f64) -> String {
                 None => "check --encoding and --scale, or try --disparity".into(),
             }
         }
-        Measure::InverseDepth { .. } => match from.stereo {
+        ValueKind::InverseDepth { .. } => match from.stereo {
             Some(rig) if is_likely(1e-3) => {
                 format!("--baseline is in metres; try --baseline {}", rig.baseline_m / 1e3)
             }

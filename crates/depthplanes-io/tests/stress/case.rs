@@ -34,7 +34,7 @@ impl Case {
         let mut values: Vec<f64> = method.params.iter().enumerate().map(value).collect();
         // Small maps have small planes.
         if changed == 0 || pick(random, 2) == 0 {
-            values[method.params.iter().position(|param| param.name == "min").unwrap()] = pick(random, 30) as f64;
+            values[method.position("min-pixels").unwrap()] = pick(random, 30) as f64;
         }
         let explained = (pick(random, 40) == 0 && map.width * map.height <= 2000)
             .then(|| [pick(random, map.width), pick(random, map.height)]);

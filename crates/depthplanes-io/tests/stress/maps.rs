@@ -2,7 +2,7 @@
 
 use crate::case::{logarithmic, pick};
 use depthplanes::scene::Random;
-use depthplanes::{DepthView, Measure, Pixel, Sensor};
+use depthplanes::{DepthView, Pixel, Sensor, ValueKind};
 use depthplanes_io::Pixels;
 
 /// A map whose rows lie `stride` pixels apart.
@@ -100,9 +100,9 @@ fn level(random: &mut Random, sensor: &Sensor, kind: usize) -> f64 {
             0 => logarithmic(random, 1e-45, 3.4e38),
             1 => logarithmic(random, 1e-6, 1e9),
             // What the sensor says is some metres away.
-            2 | 3 => match sensor.measure {
-                Measure::Disparity => random.between(2.0, 100.0),
-                measure => measure.value(random.between(0.5, 8.0)).unwrap_or(1.0).clamp(-1e38, 1e38),
+            2 | 3 => match sensor.value_kind {
+                ValueKind::Disparity => random.between(2.0, 100.0),
+                value_kind => value_kind.value(random.between(0.5, 8.0)).unwrap_or(1.0).clamp(-1e38, 1e38),
             },
             _ => random.between(0.5, 8.0),
         },

@@ -3,7 +3,7 @@
 use crate::case::{logarithmic, pick};
 use depthplanes::noise::{NoiseTable, SensorNoise};
 use depthplanes::scene::Random;
-use depthplanes::{DepthView, Detector, Intrinsics, Measure, Ngaf, Sensor};
+use depthplanes::{DepthView, Detector, Intrinsics, Ngaf, Sensor, ValueKind};
 
 /// Any sensor; one in eight may be refused.
 pub fn sensor(random: &mut Random) -> Sensor {
@@ -22,7 +22,7 @@ fn is_refused(sensor: &Sensor) -> bool {
 }
 
 fn any_sensor(random: &mut Random) -> Sensor {
-    let sensor = Sensor::default().measure(measure(random)).intrinsics(camera(random));
+    let sensor = Sensor::default().value_kind(value_kind(random)).intrinsics(camera(random));
     match pick(random, 4) {
         0 => sensor.noise(noise(random)).smooth_noise(noise(random)),
         1 => sensor.noise(noise(random)),
@@ -35,23 +35,23 @@ fn signed(random: &mut Random, size: f64) -> f64 {
     if pick(random, 3) == 0 { -size } else { size }
 }
 
-fn measure(random: &mut Random) -> Measure {
+fn value_kind(random: &mut Random) -> ValueKind {
     match pick(random, 8) {
-        0 | 1 => Measure::Depth { metres: 0.001 },
-        2 => Measure::Depth { metres: logarithmic(random, 1e-30, 1e30) },
-        3 => Measure::Depth { metres: logarithmic(random, 1e-12, 1e12) },
-        4 => Measure::InverseDepth { slope: 1.0 / 375.0, offset: 0.0 },
+        0 | 1 => ValueKind::Depth { metres: 0.001 },
+        2 => ValueKind::Depth { metres: logarithmic(random, 1e-30, 1e30) },
+        3 => ValueKind::Depth { metres: logarithmic(random, 1e-12, 1e12) },
+        4 => ValueKind::InverseDepth { slope: 1.0 / 375.0, offset: 0.0 },
         5 => {
             let slope = logarithmic(random, 1e-30, 1e30);
             let offset = [0.0, 1.0, logarithmic(random, 1e-30, 1e30)][pick(random, 3)];
-            Measure::InverseDepth { slope: signed(random, slope), offset: signed(random, offset) }
+            ValueKind::InverseDepth { slope: signed(random, slope), offset: signed(random, offset) }
         }
         6 => {
             let slope = logarithmic(random, 1e-9, 1e3);
             let offset = logarithmic(random, 1e-6, 1e3);
-            Measure::InverseDepth { slope: signed(random, slope), offset: signed(random, offset) }
+            ValueKind::InverseDepth { slope: signed(random, slope), offset: signed(random, offset) }
         }
-        _ => Measure::Disparity,
+        _ => ValueKind::Disparity,
     }
 }
 

@@ -1,7 +1,7 @@
 //! A small frame with three planes written by hand, and golden files.
 
 use depthplanes::detection::{Detection, MapFit, MetricPlane, PixelBox, Plane};
-use depthplanes::{Hessian, Intrinsics, Measure, Sensor};
+use depthplanes::{HessianNormalForm, Intrinsics, Sensor, ValueKind};
 use depthplanes_io::outputs::Report;
 use depthplanes_io::{Frame, Pixels, Provenance};
 use std::path::PathBuf;
@@ -23,7 +23,7 @@ pub fn frame() -> Frame {
         pixels: Pixels::U16((0..WIDTH * HEIGHT).map(value).collect()),
         missing: None,
         valid_range: None,
-        sensor: Sensor::default().measure(Measure::Depth { metres: 0.001 }).intrinsics(Some(Intrinsics {
+        sensor: Sensor::default().value_kind(ValueKind::Depth { metres: 0.001 }).intrinsics(Some(Intrinsics {
             fx: 40.0,
             fy: 40.0,
             cx: 23.5,
@@ -58,7 +58,7 @@ fn plane(label: u16, labels: &[u16]) -> Plane {
     let column = |at: &usize| (at % WIDTH) as u32;
     let row = |at: &usize| (at / WIDTH) as u32;
     let mean = |of: &dyn Fn(&usize) -> u32| mine.iter().map(|at| f64::from(of(at))).sum::<f64>() / mine.len() as f64;
-    let mut metric = MetricPlane::new(Hessian { normal: [0.0, 0.0, -1.0], distance: 3.0 }, [0.1, -0.2, 3.0]);
+    let mut metric = MetricPlane::new(HessianNormalForm { normal: [0.0, 0.0, -1.0], distance: 3.0 }, [0.1, -0.2, 3.0]);
     (metric.rms_m, metric.area_m2, metric.covariance) = (0.002, Some(3.5), [[0.25; 4]; 4]);
     let bounding_box = PixelBox {
         u_min: mine.iter().map(column).min().unwrap(),

@@ -15,6 +15,7 @@ use std::f64::consts::{LN_10, PI};
 
 pub(super) const EPS: Param = Param {
     name: "eps",
+    alias: None,
     default: 1.0,
     min: 0.0,
     max: f64::MAX,
@@ -26,6 +27,7 @@ pub(super) const EPS: Param = Param {
 
 pub(super) const DELTA: Param = Param {
     name: "delta",
+    alias: None,
     default: 2.5,
     min: 0.1,
     max: 1e6,

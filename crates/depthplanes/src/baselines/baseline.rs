@@ -7,15 +7,16 @@ use super::affine::Affine;
 use crate::detection::Detection;
 use crate::error::Result;
 use crate::map::{AnyView, DepthView, with_view};
-use crate::methods::extraction::{Extraction, MIN, Wanted};
+use crate::methods::extraction::{Extraction, MIN_PIXELS, Wanted};
 use crate::methods::method::{Job, Method, MethodInfo};
-use crate::methods::parameter::{Param, ParamKind};
+use crate::methods::parameter::{Param, ParamKind, position};
 use crate::noise::{NoiseModel, Space, noise_of_map};
 use crate::sensor::Sensor;
 
 /// The parameter of methods that draw at random.
 pub(super) const SEED: Param = Param {
     name: "seed",
+    alias: None,
     default: 1.0,
     min: 0.0,
     max: u32::MAX as f64,
@@ -33,7 +34,7 @@ pub(super) trait Baseline: Send + Sized + 'static {
     const ABOUT: &'static str;
     /// Its own stages, and then those of [`Extraction::extract`].
     const STAGES: &'static [&'static str];
-    /// Its parameters, [`MIN`] among them.
+    /// Its parameters, [`MIN_PIXELS`] among them.
     const PARAMS: &'static [Param];
 
     /// The method with the values of its parameters.
@@ -54,7 +55,7 @@ pub(super) const fn row<B: Baseline>() -> MethodInfo {
         build: |values| {
             let values = Values { params: B::PARAMS, values };
             Box::new(Runner {
-                min: values.whole(MIN.name) as u32,
+                min_pixels: values.whole(MIN_PIXELS.name) as u32,
                 baseline: B::new(&values),
                 extraction: Extraction::default(),
             })
@@ -71,7 +72,7 @@ pub(super) struct Values<'a> {
 impl Values<'_> {
     /// The value of a parameter, which has to be one of the method's.
     pub(super) fn of(&self, name: &str) -> f64 {
-        let at = self.params.iter().position(|param| param.name == name).expect("a parameter of the method");
+        let at = position(self.params, name).expect("a parameter of the method");
         self.values[at]
     }
 
@@ -106,7 +107,7 @@ pub(super) struct Segmented {
 /// A baseline and the memory of its last stages.
 struct Runner<B> {
     /// A plane has strictly more pixels than this.
-    min: u32,
+    min_pixels: u32,
     baseline: B,
     extraction: Extraction,
 }
@@ -117,12 +118,16 @@ impl<B: Baseline> Method for Runner<B> {
     }
 
     fn run(&mut self, view: AnyView<'_>, job: &mut Job<'_>, out: &mut Detection) -> Result<()> {
-        let (sensor, space) = (job.sensor, Space::of(job.sensor.measure));
+        let (sensor, space) = (job.sensor, Space::of(job.sensor.value_kind));
         let input = Input { view, affine: with_view!(view, map => Affine::of(&map, space)), sensor };
         let Segmented { image, noise } = self.baseline.segment(&input, job);
         let image = DepthView::new(&image, view.width(), view.height())?;
-        let wanted =
-            Wanted { min: self.min, min_area: 0.0, noise: noise.as_ref(), valid_pixels: input.affine.valid_pixels };
+        let wanted = Wanted {
+            min_pixels: self.min_pixels,
+            min_area: 0.0,
+            noise: noise.as_ref(),
+            valid_pixels: input.affine.valid_pixels,
+        };
         with_view!(view, map => self.extraction.extract(&map, &image, &wanted, job, out))
     }
 }

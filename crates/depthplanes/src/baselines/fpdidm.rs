@@ -8,7 +8,7 @@
 use super::a_contrario::{Abc, Background, DELTA, EPS, Region, paint};
 use super::affine::{Affine, Around};
 use super::baseline::{Baseline, Input, Segmented, Values};
-use crate::methods::extraction::{MIN, STAGES};
+use crate::methods::extraction::{MIN_PIXELS, STAGES};
 use crate::methods::method::Job;
 use crate::methods::parameter::{Param, ParamKind};
 use crate::statistics::least_squares::Moments;
@@ -17,7 +17,7 @@ use crate::statistics::least_squares::Moments;
 const SMALLEST: f64 = 1.0 / 32.0;
 
 pub(super) struct Fpdidm {
-    min: usize,
+    min_pixels: usize,
     log10_eps: f64,
     delta: f64,
     radius: usize,
@@ -28,11 +28,12 @@ impl Baseline for Fpdidm {
     const ABOUT: &'static str = "Grows regions from the flattest pixels and keeps those that chance does not explain; our reconstruction of Bughin et al. 2010.";
     const STAGES: &'static [&'static str] = &["planes", "grow", STAGES[0], STAGES[1], STAGES[2], STAGES[3]];
     const PARAMS: &'static [Param] = &[
-        MIN,
+        MIN_PIXELS,
         EPS,
         DELTA,
         Param {
             name: "radius",
+            alias: None,
             default: 3.0,
             min: 1.0,
             max: 100.0,
@@ -45,7 +46,7 @@ impl Baseline for Fpdidm {
 
     fn new(values: &Values<'_>) -> Self {
         Fpdidm {
-            min: values.whole("min"),
+            min_pixels: values.whole(MIN_PIXELS.name),
             log10_eps: values.of("eps").log10(),
             delta: values.of("delta"),
             radius: values.whole("radius"),
@@ -128,7 +129,7 @@ impl Fpdidm {
             scale /= 2.0;
             region = background.region(seed, &region.plane, scale, is_free)?;
         }
-        Some(region).filter(|region| region.pixels.len() > self.min && region.log10_nfa <= self.log10_eps)
+        Some(region).filter(|region| region.pixels.len() > self.min_pixels && region.log10_nfa <= self.log10_eps)
     }
 }
 

@@ -9,13 +9,13 @@
 use super::affine::{Affine, Around};
 use super::baseline::{Baseline, Input, Segmented, Values};
 use crate::limits::MAX_PLANES;
-use crate::methods::extraction::{MIN, STAGES};
+use crate::methods::extraction::{MIN_PIXELS, STAGES};
 use crate::methods::method::Job;
 use crate::methods::parameter::{Param, ParamKind};
 use crate::noise::NoiseModel;
 
 pub(super) struct Gradient {
-    min: usize,
+    min_pixels: usize,
     /// Largest difference of gradients.
     theta: f64,
     radius: usize,
@@ -28,9 +28,10 @@ impl Baseline for Gradient {
         "Groups neighbours of the same depth gradient, after the description of Hoa, Minh and Dung's ground method.";
     const STAGES: &'static [&'static str] = &["gradients", "link", STAGES[0], STAGES[1], STAGES[2], STAGES[3]];
     const PARAMS: &'static [Param] = &[
-        MIN,
+        MIN_PIXELS,
         Param {
             name: "theta-gradient",
+            alias: None,
             default: 3.0,
             min: 0.0,
             max: f64::MAX,
@@ -41,6 +42,7 @@ impl Baseline for Gradient {
         },
         Param {
             name: "radius",
+            alias: None,
             default: 5.0,
             min: 1.0,
             max: 100.0,
@@ -52,6 +54,7 @@ impl Baseline for Gradient {
         Param {
             name: "continuity",
             // Three standard deviations of the difference of two pixels.
+            alias: None,
             default: 4.2,
             min: 0.0,
             max: f64::MAX,
@@ -64,7 +67,7 @@ impl Baseline for Gradient {
 
     fn new(values: &Values<'_>) -> Self {
         Gradient {
-            min: values.whole("min"),
+            min_pixels: values.whole(MIN_PIXELS.name),
             theta: values.of("theta-gradient"),
             radius: values.whole("radius"),
             continuity: values.of("continuity"),
@@ -127,7 +130,7 @@ impl Gradient {
                     }
                 }
             }
-            if members.len() > self.min && gradients[seed].is_some() && groups < MAX_PLANES {
+            if members.len() > self.min_pixels && gradients[seed].is_some() && groups < MAX_PLANES {
                 groups += 1;
                 members.iter().for_each(|&at| image[at] = groups as u16);
             }

@@ -11,7 +11,7 @@ use super::baseline::{Baseline, Input, SEED, Segmented, Values};
 use super::cloud::Cloud;
 use super::pieces::{EPSILON, Pieces, Tolerance};
 use crate::limits::MAX_PLANES;
-use crate::methods::extraction::{MIN, STAGES};
+use crate::methods::extraction::{MIN_PIXELS, STAGES};
 use crate::methods::method::Job;
 use crate::methods::parameter::{Param, ParamKind};
 use crate::methods::rays::{Plane3, Vec3, dot, sub, unit};
@@ -33,7 +33,7 @@ const IDLE: usize = 200_000;
 const DRAW: usize = 16;
 
 pub(super) struct Hough {
-    min: usize,
+    min_pixels: usize,
     epsilon: f64,
     /// Radians.
     angle: f64,
@@ -48,10 +48,11 @@ impl Baseline for Hough {
     const ABOUT: &'static str = "Finds planes by the randomised Hough transform with a ball of cells (Borrmann et al. 2011), from its description.";
     const STAGES: &'static [&'static str] = &["points", "vote", STAGES[0], STAGES[1], STAGES[2], STAGES[3]];
     const PARAMS: &'static [Param] = &[
-        MIN,
+        MIN_PIXELS,
         EPSILON,
         Param {
             name: "angle",
+            alias: None,
             default: 3.0,
             min: 1.0,
             max: 45.0,
@@ -62,6 +63,7 @@ impl Baseline for Hough {
         },
         Param {
             name: "distance",
+            alias: None,
             default: 0.0,
             min: 0.0,
             max: f64::MAX,
@@ -72,6 +74,7 @@ impl Baseline for Hough {
         },
         Param {
             name: "votes",
+            alias: None,
             default: 10.0,
             min: 1.0,
             max: 10_000.0,
@@ -82,6 +85,7 @@ impl Baseline for Hough {
         },
         Param {
             name: "misses",
+            alias: None,
             default: 100.0,
             min: 1.0,
             max: 10_000.0,
@@ -95,7 +99,7 @@ impl Baseline for Hough {
 
     fn new(values: &Values<'_>) -> Self {
         Hough {
-            min: values.whole("min"),
+            min_pixels: values.whole(MIN_PIXELS.name),
             epsilon: values.of("epsilon"),
             angle: values.of("angle").to_radians(),
             distance: values.of("distance"),
@@ -124,7 +128,7 @@ impl Hough {
         let mut pieces = Pieces::new(affine, cloud, tolerance, 0);
         let mut free = cloud.known.clone();
         let (mut misses, mut idle) = (0, 0);
-        while free.len() > self.min && misses < self.misses && idle < IDLE && pieces.count() < MAX_PLANES {
+        while free.len() > self.min_pixels && misses < self.misses && idle < IDLE && pieces.count() < MAX_PLANES {
             if pieces.work.is_spent() {
                 break;
             }
@@ -138,7 +142,7 @@ impl Hough {
             }
             pieces.work.count(ball.votes.len());
             let Some((plane, voters)) = ball.winner(cell) else { continue };
-            match pieces.take(&plane, &voters, self.min) {
+            match pieces.take(&plane, &voters, self.min_pixels) {
                 Some(_) => {
                     (misses, idle) = (0, 0);
                     pieces.work.count(free.len());
@@ -267,7 +271,7 @@ fn outward(plane: Plane3) -> Plane3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::{Intrinsics, Measure};
+    use crate::camera::{Intrinsics, ValueKind};
     use crate::map::DepthView;
     use crate::methods::find;
     use crate::sensor::Sensor;
@@ -313,7 +317,7 @@ mod tests {
         let mut random = Random::new(3);
         let wall: Vec<f32> = (0..160 * 120).map(|_| (2.0 + 0.004 * random.gaussian()) as f32).collect();
         let sensor = Sensor {
-            measure: Measure::Depth { metres: 1.0 },
+            value_kind: ValueKind::Depth { metres: 1.0 },
             intrinsics: Intrinsics::new(150.0, 150.0, 80.0, 60.0).ok(),
             ..Sensor::default()
         };

@@ -9,13 +9,13 @@
 use super::affine::Affine;
 use super::baseline::{Baseline, Input, Segmented, Values};
 use crate::limits::MAX_PLANES;
-use crate::methods::extraction::{MIN, STAGES};
+use crate::methods::extraction::{MIN_PIXELS, STAGES};
 use crate::methods::method::Job;
 use crate::methods::parameter::{Param, ParamKind};
 use crate::methods::rays::{Plane3, Rays, Vec3, cross, dot, sub, unit};
 
 pub(super) struct Normals {
-    min: usize,
+    min_pixels: usize,
     /// Cosine of the largest angle between normals.
     cosine: f64,
     distance: f64,
@@ -28,9 +28,10 @@ impl Baseline for Normals {
         "Groups neighbours whose local normals agree and that lie on the group's plane (Yoo et al. 2013).";
     const STAGES: &'static [&'static str] = &["points", "grow", STAGES[0], STAGES[1], STAGES[2], STAGES[3]];
     const PARAMS: &'static [Param] = &[
-        MIN,
+        MIN_PIXELS,
         Param {
             name: "angle",
+            alias: None,
             default: 25.0,
             min: 0.1,
             max: 90.0,
@@ -41,6 +42,7 @@ impl Baseline for Normals {
         },
         Param {
             name: "distance",
+            alias: None,
             default: 0.03,
             min: 1e-6,
             max: f64::MAX,
@@ -51,6 +53,7 @@ impl Baseline for Normals {
         },
         Param {
             name: "reach",
+            alias: None,
             default: 4.0,
             min: 1.0,
             max: 100.0,
@@ -63,7 +66,7 @@ impl Baseline for Normals {
 
     fn new(values: &Values<'_>) -> Self {
         Normals {
-            min: values.whole("min"),
+            min_pixels: values.whole(MIN_PIXELS.name),
             cosine: values.of("angle").to_radians().cos(),
             distance: values.of("distance"),
             reach: values.whole("reach"),
@@ -114,7 +117,7 @@ impl Normals {
                     }
                 }
             }
-            if members.len() > self.min && planes.len() < MAX_PLANES {
+            if members.len() > self.min_pixels && planes.len() < MAX_PLANES {
                 planes.push(region.plane());
                 members.iter().for_each(|&at| image[at] = planes.len() as u16);
             }

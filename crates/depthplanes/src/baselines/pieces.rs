@@ -18,6 +18,7 @@ const FITS: usize = 3;
 /// The parameter that both methods have.
 pub(super) const EPSILON: Param = Param {
     name: "epsilon",
+    alias: None,
     default: 0.0,
     min: 0.0,
     max: f64::MAX,
@@ -143,9 +144,9 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// Takes the piece around these points, its plane fitted to it, unless it has `min` points or fewer. Returns how
+    /// Takes the piece around these points, its plane fitted to it, unless it has `min-pixels` points or fewer. Returns how
     /// many points are no longer free.
-    pub(super) fn take(&mut self, plane: &Plane3, from: &[u32], min: usize) -> Option<usize> {
+    pub(super) fn take(&mut self, plane: &Plane3, from: &[u32], min_pixels: usize) -> Option<usize> {
         let (mut plane, mut piece) = (*plane, self.largest_among(Self::is_open, plane, from, usize::MAX)?);
         for _ in 0..FITS {
             let fitted = self.fit(&piece)?;
@@ -155,7 +156,7 @@ impl<'a> Pieces<'a> {
             }
             (plane, piece) = (fitted, larger);
         }
-        if piece.len() <= min || piece.is_empty() {
+        if piece.len() <= min_pixels || piece.is_empty() {
             return None;
         }
         self.planes.push(plane);

@@ -10,7 +10,7 @@ use super::affine::Affine;
 use super::baseline::{Baseline, Input, SEED, Segmented, Values};
 use super::work::Work;
 use crate::limits::MAX_PLANES;
-use crate::methods::extraction::{MIN, STAGES};
+use crate::methods::extraction::{MIN_PIXELS, STAGES};
 use crate::methods::method::Job;
 use crate::methods::parameter::{Param, ParamKind};
 use crate::util::random::Random;
@@ -25,7 +25,7 @@ const FEW_OF_DISC: usize = 64;
 const MOST_OF_DISC: usize = 1024;
 
 pub(super) struct Ppdfdm {
-    min: usize,
+    min_pixels: usize,
     log10_eps: f64,
     delta: f64,
     spacing: usize,
@@ -48,11 +48,12 @@ impl Baseline for Ppdfdm {
         "Takes the region that chance explains least, again and again; our reconstruction of Bughin and Almansa 2010.";
     const STAGES: &'static [&'static str] = &["draw", "search", "merge", STAGES[0], STAGES[1], STAGES[2], STAGES[3]];
     const PARAMS: &'static [Param] = &[
-        MIN,
+        MIN_PIXELS,
         EPS,
         DELTA,
         Param {
             name: "spacing",
+            alias: None,
             default: 8.0,
             min: 1.0,
             max: 1000.0,
@@ -63,6 +64,7 @@ impl Baseline for Ppdfdm {
         },
         Param {
             name: "radius",
+            alias: None,
             default: 8.0,
             min: 1.0,
             max: 100.0,
@@ -73,6 +75,7 @@ impl Baseline for Ppdfdm {
         },
         Param {
             name: "draws",
+            alias: None,
             default: 20.0,
             min: 1.0,
             max: 1000.0,
@@ -86,7 +89,7 @@ impl Baseline for Ppdfdm {
 
     fn new(values: &Values<'_>) -> Self {
         Ppdfdm {
-            min: values.whole("min"),
+            min_pixels: values.whole(MIN_PIXELS.name),
             log10_eps: values.of("eps").log10(),
             delta: values.of("delta"),
             spacing: values.whole("spacing"),
@@ -188,7 +191,8 @@ impl Ppdfdm {
                     }
                 }
             }
-            let is_plane = |region: &Region| region.pixels.len() > self.min && region.log10_nfa <= self.log10_eps;
+            let is_plane =
+                |region: &Region| region.pixels.len() > self.min_pixels && region.log10_nfa <= self.log10_eps;
             let planes = open.iter().enumerate().filter(|(_, (_, region))| is_plane(region));
             let best = planes.min_by(|(_, (_, one)), (_, (_, other))| one.log10_nfa.total_cmp(&other.log10_nfa));
             let Some(best) = best.map(|(place, _)| place) else { break };

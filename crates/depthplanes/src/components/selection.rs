@@ -1,4 +1,4 @@
-//! Plane selection (paper, section 3d): a group is a plane if it has more than `min` pixels.
+//! Plane selection (paper, section 3d): a group is a plane if it has more than `min-pixels` pixels.
 //!
 //! In: [`Groups`]. Out: the groups that are kept, by decreasing size, and for every run of the map
 //! the label of the plane it belongs to.
@@ -52,24 +52,24 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// Keeps the groups with strictly more than `min` pixels.
+    /// Keeps the groups with strictly more than `min-pixels` pixels.
     ///
     /// # Errors
     /// [`Error::TooManyPlanes`] if there are more than [`MAX_PLANES`]; nothing is selected then.
-    pub fn select(&mut self, groups: &Groups, min: u32) -> Result<&[Kept]> {
+    pub fn select(&mut self, groups: &Groups, min_pixels: u32) -> Result<&[Kept]> {
         let most_groups = groups.width() * groups.height();
         reserve_to(&mut self.kept, MAX_PLANES.min(most_groups));
         reserve_to(&mut self.label_of_group, most_groups);
         reserve_to(&mut self.label_of_provisional, most_groups);
-        let found = groups.sizes().iter().filter(|&&size| size > min).count();
+        let found = groups.sizes().iter().filter(|&&size| size > min_pixels).count();
         if found > MAX_PLANES {
             self.label_groups(groups);
-            return Err(Error::TooManyPlanes { found, raise: "`min`".to_string() });
+            return Err(Error::TooManyPlanes { found, raise: "`min-pixels`".to_string() });
         }
         // Most groups of a noisy map are tiny: a block of them is passed over by one test.
         for (first, block) in (0u32..).step_by(BLOCK).zip(groups.sizes().chunks(BLOCK)) {
-            if block.iter().fold(false, |any, &size| any | (size > min)) {
-                let larger = (first..).zip(block).filter(|&(_, &size)| size > min);
+            if block.iter().fold(false, |any, &size| any | (size > min_pixels)) {
+                let larger = (first..).zip(block).filter(|&(_, &size)| size > min_pixels);
                 self.kept.extend(larger.map(|(group, &pixel_count)| Kept { group, pixel_count }));
             }
         }

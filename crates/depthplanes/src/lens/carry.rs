@@ -90,7 +90,7 @@ impl Lens {
             finder: &mut RoundingFinder,
             pixels: &'a mut Vec<T>,
         ) -> Result<AnyView<'a>> {
-            rectifier.resample(map, &sensor.measure, finder, pixels);
+            rectifier.resample(map, &sensor.value_kind, finder, pixels);
             Ok(rectifier.view(map, pixels)?.into())
         }
         let finder = &mut self.finder;

@@ -8,7 +8,7 @@
 //! lengths are smaller.
 
 use super::distortion::Distortion;
-use crate::camera::{Intrinsics, Measure};
+use crate::camera::{Intrinsics, ValueKind};
 use crate::error::Result;
 use crate::limits::{MAX_PIXELS, MAX_SIDE};
 use crate::map::{DepthView, Pixel, Validity};
@@ -72,11 +72,11 @@ impl Rectifier {
     pub(super) fn resample<T: Pixel>(
         &self,
         map: &DepthView<'_, T>,
-        measure: &Measure,
+        value_kind: &ValueKind,
         finder: &mut RoundingFinder,
         out: &mut Vec<T>,
     ) {
-        let space = Space::of(*measure);
+        let space = Space::of(*value_kind);
         let values = Values { validity: map.validity(), rounding: finder.find(map, space), space };
         out.clear();
         out.reserve(self.places.len());
@@ -283,7 +283,7 @@ mod tests {
         let pixels: Vec<f32> = (0..160 * 120).map(|at| truth((at % 160) as f64, (at / 160) as f64) as f32).collect();
         let map = DepthView::new(&pixels, 160, 120).unwrap();
         let mut out = Vec::new();
-        made.resample(&map, &Measure::Depth { metres: 1.0 }, &mut RoundingFinder::default(), &mut out);
+        made.resample(&map, &ValueKind::Depth { metres: 1.0 }, &mut RoundingFinder::default(), &mut out);
         for (&value, &[u, v]) in out.iter().zip(&made.places) {
             if u > 0.0 && v > 0.0 && u < 159.0 && v < 119.0 {
                 assert!((f64::from(value) - truth(u.into(), v.into())).abs() < 1e-4);

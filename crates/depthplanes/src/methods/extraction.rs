@@ -1,6 +1,6 @@
 //! The last stages of a method that says for each pixel which region it belongs to.
 //!
-//! In: a region image. Out: the detection: connected pieces of a region with more than `min` pixels, by decreasing size,
+//! In: a region image. Out: the detection: connected pieces of a region with more than `min-pixels` pixels, by decreasing size,
 //! fitted, described and painted.
 
 use super::method::Job;
@@ -26,7 +26,7 @@ pub(crate) struct Extraction {
 #[derive(Clone, Copy)]
 pub(crate) struct Wanted<'a> {
     /// A plane has strictly more pixels than this.
-    pub(crate) min: u32,
+    pub(crate) min_pixels: u32,
     /// A plane has at least this area, m2; 0 for off.
     pub(crate) min_area: f64,
     /// What is known of the map's noise.
@@ -39,8 +39,9 @@ pub(crate) struct Wanted<'a> {
 pub(crate) const STAGES: [&str; 4] = ["group", "select", "fit", "label"];
 
 /// The parameter that all methods have.
-pub(crate) const MIN: Param = Param {
-    name: "min",
+pub(crate) const MIN_PIXELS: Param = Param {
+    name: "min-pixels",
+    alias: Some("min"),
     default: 100.0,
     min: 0.0,
     max: u32::MAX as f64,
@@ -80,12 +81,12 @@ impl Extraction {
         out: &mut Detection,
     ) -> Result<()> {
         let Extraction { components, selection, statistics } = self;
-        let &Wanted { min, min_area, noise, valid_pixels } = wanted;
+        let &Wanted { min_pixels, min_area, noise, valid_pixels } = wanted;
         components.group(image, &Connectivity::new(image.validity(), 0.0)?, job.threads);
         unite(components);
         let groups = components.groups();
         job.done("group");
-        selection.select(groups, min)?;
+        selection.select(groups, min_pixels)?;
         job.done("select");
         let runs = selection.runs(groups);
         statistics.tally(map, runs, 0, &job.sensor, job.threads);
@@ -107,7 +108,7 @@ impl Extraction {
         Ok(())
     }
 
-    /// The curved regions of a region image (0 = none): connected pieces of one region with more than `min` pixels; `unite`
+    /// The curved regions of a region image (0 = none): connected pieces of one region with more than `min-pixels` pixels; `unite`
     /// may put groups together before they are counted. `old`: memory to reuse.
     ///
     /// # Errors
@@ -116,7 +117,7 @@ impl Extraction {
         &mut self,
         map: &DepthView<'_, T>,
         ids: &DepthView<'_, u16>,
-        min: u32,
+        min_pixels: u32,
         unite: impl FnOnce(&mut ConnectedComponents),
         job: &Job<'_>,
         old: Option<Curved>,
@@ -125,7 +126,7 @@ impl Extraction {
         components.group(ids, &Connectivity::new(ids.validity(), 0.0)?, job.threads);
         unite(components);
         let groups = components.groups();
-        selection.select(groups, min)?;
+        selection.select(groups, min_pixels)?;
         statistics.tally(map, selection.runs(groups), 0, &job.sensor, job.threads);
         let Curved { mut labels, mut regions } = old.unwrap_or_default();
         selection.paint(groups, &mut labels);
@@ -156,12 +157,12 @@ mod tests {
         let view = DepthView::new(&ids, 8, 4).unwrap().valid_range(1, u16::MAX).unwrap();
         let job = Job { sensor: Sensor::default(), threads: 1, curved: true, joiner: None, observer: &mut |_| () };
         let mut old = None;
-        for (min, expected) in [(0, &[12, 6, 4][..]), (4, &[12, 6]), (5, &[12, 6]), (6, &[12]), (12, &[])] {
-            let found = Extraction::default().extract_curved(&map, &view, min, |_| (), &job, old).unwrap();
+        for (min_pixels, expected) in [(0, &[12, 6, 4][..]), (4, &[12, 6]), (5, &[12, 6]), (6, &[12]), (12, &[])] {
+            let found = Extraction::default().extract_curved(&map, &view, min_pixels, |_| (), &job, old).unwrap();
             assert_eq!(
                 found.regions.iter().map(|region| region.pixel_count).collect::<Vec<_>>(),
                 expected,
-                "min {min}"
+                "min-pixels {min_pixels}"
             );
             for region in &found.regions {
                 assert_eq!(found.labels.iter().filter(|&&label| label == region.label).count(), region.pixel_count);

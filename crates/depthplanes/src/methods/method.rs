@@ -1,6 +1,6 @@
 //! What a method is: its row of the table, what it is run with, and how it is asked for.
 
-use super::parameter::{Param, check, defaults};
+use super::parameter::{Param, check, defaults, position};
 use crate::coplanar::Joiner;
 use crate::detection::Detection;
 use crate::error::{Error, Result};
@@ -130,6 +130,11 @@ impl MethodInfo {
         defaults(self.params)
     }
 
+    /// Where the parameter of that name, or of that alias, stands in [`MethodInfo::params`].
+    pub fn position(&self, name: &str) -> Option<usize> {
+        position(self.params, name)
+    }
+
     /// The method with one value for each parameter, in order.
     ///
     /// # Errors
@@ -142,21 +147,21 @@ impl MethodInfo {
         Ok(Configured((self.build)(values)))
     }
 
-    /// The method with some parameters given by name and the others at their defaults.
+    /// The method with some parameters given by name or alias and the others at their defaults.
     ///
     /// # Errors
     /// [`Error::Unknown`] for a name that is not in its table, [`Error::Parameter`] for a value out
     /// of range.
     ///
     /// ```
-    /// let ngaf = depthplanes::methods::find("ngaf")?.with(&[("theta", 2.0), ("min", 64.0)])?;
+    /// let ngaf = depthplanes::methods::find("ngaf")?.with(&[("theta", 2.0), ("min-pixels", 64.0)])?;
     /// assert_eq!(ngaf.info().name, "ngaf");
     /// # Ok::<(), depthplanes::Error>(())
     /// ```
     pub fn with(&self, given: &[(&str, f64)]) -> Result<Configured> {
         let mut values = self.defaults();
         for &(name, value) in given {
-            let at = self.params.iter().position(|param| param.name == name).ok_or_else(|| Error::Unknown {
+            let at = self.position(name).ok_or_else(|| Error::Unknown {
                 what: "parameter",
                 given: name.to_string(),
                 accepted: names(self.params.iter().map(|param| param.name)),

@@ -7,6 +7,7 @@ use crate::noise::{SensorNoise, Space};
 
 pub(crate) const NOISE: Param = Param {
     name: "noise",
+    alias: None,
     default: 0.0,
     min: 0.0,
     max: MAX_NOISE,
@@ -18,6 +19,7 @@ pub(crate) const NOISE: Param = Param {
 
 pub(crate) const NOISE_GROWTH: Param = Param {
     name: "noise-growth",
+    alias: None,
     default: 0.0,
     min: 0.0,
     max: MAX_NOISE,
@@ -29,6 +31,7 @@ pub(crate) const NOISE_GROWTH: Param = Param {
 
 pub(crate) const SMOOTH_NOISE: Param = Param {
     name: "smooth-noise",
+    alias: None,
     default: 0.0,
     min: 0.0,
     max: MAX_NOISE,
@@ -40,6 +43,7 @@ pub(crate) const SMOOTH_NOISE: Param = Param {
 
 pub(crate) const SMOOTH_NOISE_GROWTH: Param = Param {
     name: "smooth-noise-growth",
+    alias: None,
     default: 0.0,
     min: 0.0,
     max: MAX_NOISE,
@@ -51,6 +55,7 @@ pub(crate) const SMOOTH_NOISE_GROWTH: Param = Param {
 
 pub(crate) const NOISE_SCALE: Param = Param {
     name: "noise-scale",
+    alias: None,
     default: 1.0,
     min: 0.01,
     max: 100.0,

@@ -8,6 +8,9 @@ use crate::error::{Error, Result};
 pub struct Param {
     /// Name of the flag and keyword.
     pub name: &'static str,
+    /// Another name that is accepted wherever parameters are named, such as a paper's word for it. What is written has
+    /// `name`.
+    pub alias: Option<&'static str>,
     /// Default value.
     pub default: f64,
     /// Smallest value accepted.
@@ -37,6 +40,11 @@ pub enum ParamKind {
 }
 
 impl Param {
+    /// Whether this is its name or its alias.
+    pub fn is_called(&self, name: &str) -> bool {
+        self.name == name || self.alias == Some(name)
+    }
+
     /// The values accepted, in words.
     pub fn accepted(&self) -> String {
         let (min, max) = (self.min, self.max);
@@ -67,6 +75,11 @@ impl Param {
 /// The default of each parameter, in order.
 pub(crate) fn defaults(params: &[Param]) -> Vec<f64> {
     params.iter().map(|param| param.default).collect()
+}
+
+/// Where the parameter of that name, or of that alias, stands.
+pub(crate) fn position(params: &[Param], name: &str) -> Option<usize> {
+    params.iter().position(|param| param.is_called(name))
 }
 
 /// Checks one value for each parameter.

@@ -3,7 +3,7 @@
 //! In: what is known of the sensor, and q at places of the image. Out: points and planes. Where the camera is not
 //! known, [`Intrinsics::assumed`] stands in for it.
 
-use crate::camera::{Intrinsics, Measure};
+use crate::camera::{Intrinsics, ValueKind};
 use crate::sensor::Sensor;
 
 /// A point or a direction.
@@ -60,9 +60,9 @@ pub(crate) struct Rays {
 impl Rays {
     /// The rays of a sensor. For disparity, inverse depth is known up to a factor only, on which angles do not depend.
     pub(crate) fn of(sensor: &Sensor, width: usize, height: usize) -> Self {
-        let (slope, offset) = match sensor.measure {
-            Measure::InverseDepth { slope, offset } => (slope, offset),
-            Measure::Depth { .. } | Measure::Disparity => (1.0, 0.0), // q of depth is in 1/m
+        let (slope, offset) = match sensor.value_kind {
+            ValueKind::InverseDepth { slope, offset } => (slope, offset),
+            ValueKind::Depth { .. } | ValueKind::Disparity => (1.0, 0.0), // q of depth is in 1/m
         };
         let camera = sensor.intrinsics.unwrap_or_else(|| Intrinsics::assumed(width, height));
         Rays { camera, slope, offset }
@@ -72,7 +72,7 @@ impl Rays {
     /// they are not; `median` finds the median of q.
     pub(crate) fn scaled(sensor: &Sensor, [width, height]: [usize; 2], median: impl FnOnce() -> f64) -> Self {
         let rays = Rays::of(sensor, width, height);
-        if sensor.intrinsics.is_some() && sensor.measure != Measure::Disparity {
+        if sensor.intrinsics.is_some() && sensor.value_kind != ValueKind::Disparity {
             return rays;
         }
         Rays { slope: 1.0 / median(), offset: 0.0, ..rays }

@@ -123,7 +123,7 @@ impl LabelPlane {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::Measure;
+    use crate::camera::ValueKind;
     use crate::noise::SensorNoise;
     use crate::noise::sparse::SparseFinder;
 
@@ -164,7 +164,7 @@ mod tests {
             let border = row.iter().position(|&label| label == 2).unwrap();
             row[border] = 1;
         }
-        let noise = NoiseModel::new(Measure::Disparity, SensorNoise::Value { sigma: 0.05 }, 0.0).unwrap();
+        let noise = NoiseModel::new(ValueKind::Disparity, SensorNoise::Value { sigma: 0.05 }, 0.0).unwrap();
         let mut image = vec![7; 3];
         for (labels, is_exact) in [(&labels, true), (&shifted, false)] {
             Spreader::default().spread(&map, Space::Value, &sparse, labels, &noise, 4.0, &mut image);

@@ -3,6 +3,7 @@
 //! In: a method's values, a map, a pixel, and changes in the order of preference. Out: the first that works. Nothing
 //! is suggested that was not run.
 
+use super::extraction::MIN_PIXELS;
 use super::method::{Job, MethodInfo};
 use crate::detection::Detection;
 use crate::explanation::Suggestion;
@@ -33,7 +34,7 @@ impl Tries<'_> {
     fn attempt(&self, change: Change) -> Option<Suggestion> {
         let mut values = self.values.to_vec();
         for &(name, value) in &change {
-            values[self.info.params.iter().position(|param| param.name == name)?] = value;
+            values[self.info.position(name)?] = value;
         }
         let mut method = self.info.of_values(&values).ok()?.0;
         let mut found = Detection::default();
@@ -50,13 +51,13 @@ impl Tries<'_> {
     }
 }
 
-/// Fewest pixels of a surface for which `min` is lowered: letting stray pixels in would make a plane of each.
+/// Fewest pixels of a surface for which `min-pixels` is lowered: letting stray pixels in would make a plane of each.
 const STRAY: usize = 8;
 
-/// The changes of `min` that may let in a surface of `pixels` pixels: a value a little below that first, then smaller ones.
-pub(crate) fn smaller_min(pixels: usize) -> impl Iterator<Item = Change> {
+/// The changes of `min-pixels` that may let in a surface of `pixels` pixels: a value a little below that first, then smaller ones.
+pub(crate) fn lower_min_pixels(pixels: usize) -> impl Iterator<Item = Change> {
     let shares = [0.97, 0.8, 0.6, 0.4, 0.2, 0.1, 0.0].into_iter().filter(move |_| pixels >= STRAY);
-    shares.map(move |share| vec![("min", floored(share * pixels as f64))])
+    shares.map(move |share| vec![(MIN_PIXELS.name, floored(share * pixels as f64))])
 }
 
 /// The value rounded down to a whole number of two significant digits.

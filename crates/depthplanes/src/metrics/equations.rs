@@ -6,7 +6,7 @@
 
 use super::contingency::Match;
 use super::segcomp::SegComp;
-use crate::camera::Hessian;
+use crate::camera::HessianNormalForm;
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,7 +22,7 @@ pub struct PlaneError {
 
 /// The error of one plane. `(normal, distance)` and `(-normal, -distance)` are the same plane, so
 /// that a plane through the camera may point either way.
-pub fn plane_error(truth: &Hessian, prediction: &Hessian) -> PlaneError {
+pub fn plane_error(truth: &HessianNormalForm, prediction: &HessianNormalForm) -> PlaneError {
     let angle = angle_deg(truth.normal, prediction.normal);
     if angle <= 90.0 {
         PlaneError { normal_deg: angle, offset_m: (truth.distance - prediction.distance).abs() }
@@ -35,8 +35,8 @@ pub fn plane_error(truth: &Hessian, prediction: &Hessian) -> PlaneError {
 /// label's plane. A match whose planes are not both known has no entry.
 pub fn plane_errors(
     matches: &[Match],
-    truth: impl Fn(u16) -> Option<Hessian>,
-    prediction: impl Fn(u16) -> Option<Hessian>,
+    truth: impl Fn(u16) -> Option<HessianNormalForm>,
+    prediction: impl Fn(u16) -> Option<HessianNormalForm>,
 ) -> Vec<(Match, PlaneError)> {
     let error = |pair: &Match| Some((*pair, plane_error(&truth(pair.truth)?, &prediction(pair.prediction)?)));
     matches.iter().filter_map(error).collect()
@@ -69,12 +69,12 @@ pub fn adjacent(labels: &[u16], width: usize, height: usize) -> Result<Vec<(u16,
 /// difference between the angle of the predicted planes and that of the true ones, degrees, 0..=180. In the order of
 /// the pairs; pairs with a plane that is not known are passed over.
 ///
-/// Normals point to the camera ([`Hessian`]), so that convex and concave edges differ.
+/// Normals point to the camera ([`HessianNormalForm`]), so that convex and concave edges differ.
 pub fn angle_errors(
     found: &SegComp,
     neighbours: &[(u16, u16)],
-    truth: impl Fn(u16) -> Option<Hessian>,
-    prediction: impl Fn(u16) -> Option<Hessian>,
+    truth: impl Fn(u16) -> Option<HessianNormalForm>,
+    prediction: impl Fn(u16) -> Option<HessianNormalForm>,
 ) -> Vec<f64> {
     let partner: BTreeMap<u16, u16> = found.correct.iter().map(|pair| (pair.truth, pair.prediction)).collect();
     let error = |&(a, b): &(u16, u16)| {

@@ -11,7 +11,7 @@ use super::scales::{Cell, Cells, FEW, SIDES, SUMMED, Scales};
 use super::sensor_noise::SensorNoise;
 use super::space::{LARGEST_Q, Space};
 use super::steps::Steps;
-use crate::camera::Measure;
+use crate::camera::ValueKind;
 use crate::error::{Error, Result};
 use crate::map::with_view;
 use crate::map::{AnyView, DepthView, Pixel};
@@ -44,7 +44,7 @@ pub struct Estimate {
     /// Blocks of 4 x 4 pixels that were compared with their neighbours on either side, along rows and along columns.
     pub blocks: usize,
     /// What the maps' numbers mean; of several depth maps with different units, the last one's.
-    pub measure: Measure,
+    pub value_kind: ValueKind,
     /// The range of the blocks, without a fortieth of them at either end: 1/m for depth maps, map units for all
     /// others.
     pub range: [f64; 2],
@@ -56,17 +56,17 @@ pub struct Estimate {
 impl Estimate {
     /// The model of the white part of the sensor's own error, without rounding.
     pub fn model(&self) -> NoiseModel {
-        NoiseModel::new(self.measure, self.noise, 0.0).expect("an estimate is of its own measure's kind")
+        NoiseModel::new(self.value_kind, self.noise, 0.0).expect("an estimate is of the maps' own kind")
     }
 
     /// The model of the smooth part, over 16 pixels.
     pub fn smooth_model(&self) -> NoiseModel {
-        NoiseModel::new(self.measure, self.smooth, 0.0).expect("an estimate is of its own measure's kind")
+        NoiseModel::new(self.value_kind, self.smooth, 0.0).expect("an estimate is of the maps' own kind")
     }
 
     /// The model of the smooth part with its longer waves.
     pub fn wide_model(&self) -> NoiseModel {
-        NoiseModel::new(self.measure, self.wide, 0.0).expect("an estimate is of its own measure's kind")
+        NoiseModel::new(self.value_kind, self.wide, 0.0).expect("an estimate is of the maps' own kind")
     }
 }
 
@@ -81,7 +81,7 @@ impl Estimate {
 /// use depthplanes::scene::Spec;
 /// let frame = "room:sensor=tof_white".parse::<Spec>()?.frame()?;
 /// let mut estimator = Estimator::default();
-/// estimator.add(frame.view(), frame.sensor.measure)?;
+/// estimator.add(frame.view(), frame.sensor.value_kind)?;
 /// // The generator's noise is 1 mm + 1.3 mm (z / 1 m)^2.
 /// let sigma_m = estimator.estimate()?.model().depth_sigma_m(3.0).unwrap();
 /// assert!((sigma_m / 0.0127 - 1.0).abs() < 0.2);
@@ -94,23 +94,23 @@ pub struct Estimator {
     finder: RoundingFinder,
     /// The rounding of the newest frame.
     rounding: Option<Rounding>,
-    /// The measure of the frames so far, and their finest step.
-    seen: Option<(Measure, f64)>,
+    /// The value kind of the frames so far, and their finest step.
+    seen: Option<(ValueKind, f64)>,
 }
 
 impl Estimator {
-    /// Adds a frame whose numbers mean `measure`.
+    /// Adds a frame whose numbers are of that `value_kind`.
     ///
     /// # Errors
-    /// [`Error::MixedMeasures`] unless all frames hold depth, or all the same disparity.
-    pub fn add<'m>(&mut self, map: impl Into<AnyView<'m>>, measure: Measure) -> Result<()> {
-        let is_depth = |measure| matches!(measure, Measure::Depth { .. });
-        if self.seen.is_some_and(|(seen, _)| seen != measure && !(is_depth(seen) && is_depth(measure))) {
-            return Err(Error::MixedMeasures);
+    /// [`Error::MixedValueKinds`] unless all frames hold depth, or all the same disparity.
+    pub fn add<'m>(&mut self, map: impl Into<AnyView<'m>>, value_kind: ValueKind) -> Result<()> {
+        let is_depth = |value_kind| matches!(value_kind, ValueKind::Depth { .. });
+        if self.seen.is_some_and(|(seen, _)| seen != value_kind && !(is_depth(seen) && is_depth(value_kind))) {
+            return Err(Error::MixedValueKinds);
         }
-        let step = with_view!(map.into(), map => self.look(&map, Space::of(measure)));
+        let step = with_view!(map.into(), map => self.look(&map, Space::of(value_kind)));
         let finest = self.seen.map_or(step, |(_, finest)| step.min(finest));
-        self.seen = Some((measure, finest));
+        self.seen = Some((value_kind, finest));
         Ok(())
     }
 
@@ -142,8 +142,8 @@ impl Estimator {
     pub fn estimate(&mut self) -> Result<Estimate> {
         let blocks = self.scales.bends[0].len();
         let too_few = Error::TooFewBlocks { found: blocks, least: FEW };
-        let Some((measure, step)) = self.seen else { return Err(too_few) };
-        let space = Space::of(measure);
+        let Some((value_kind, step)) = self.seen else { return Err(too_few) };
+        let space = Space::of(value_kind);
         let rounding = self.rounding.unwrap_or(Rounding::NONE);
         let Some(errors) = self.scales.errors(space, &rounding) else { return Err(too_few) };
         let range = self.range();
@@ -151,7 +151,7 @@ impl Estimator {
         let noise = white(&errors, range, space, step);
         let [smooth, wide] = [errors.smooth, errors.whole].map(|factor| errors.times(factor, space));
         let beside_rounding = beside_rounding(&errors, range, space, &rounding);
-        Ok(Estimate { noise, beside_rounding, smooth, wide, step, blocks, measure, range, lateral_noise_px: ray })
+        Ok(Estimate { noise, beside_rounding, smooth, wide, step, blocks, value_kind, range, lateral_noise_px: ray })
     }
 
     /// The range of q without a fortieth of the blocks at either end.
@@ -193,20 +193,20 @@ fn beside_rounding(errors: &Errors, [low, high]: [f64; 2], space: Space, roundin
 /// The noise that is stated of a sensor, for a map of that pixel type; none if nothing is stated, or that of another kind of
 /// map.
 pub(crate) fn stated_noise<T: Pixel>(sensor: &Sensor) -> Option<NoiseModel> {
-    NoiseModel::new(sensor.measure, sensor.noise?, if T::IS_INTEGER { 1.0 } else { 0.0 })
+    NoiseModel::new(sensor.value_kind, sensor.noise?, if T::IS_INTEGER { 1.0 } else { 0.0 })
 }
 
 /// The noise of one map, for methods that compare single pixels with planes: the sensor's noise as stated, or else
 /// both parts as the map shows them, since a pixel's error has both; 0 where the map shows nothing.
 pub(crate) fn noise_of_map<T: Pixel>(map: &DepthView<'_, T>, sensor: &Sensor) -> NoiseModel {
-    let (measure, space) = (sensor.measure, Space::of(sensor.measure));
+    let (value_kind, space) = (sensor.value_kind, Space::of(sensor.value_kind));
     let mut estimator = Estimator::default();
     let step = estimator.look(map, space);
-    let stated = sensor.noise.and_then(|noise| NoiseModel::new(measure, noise, step));
+    let stated = sensor.noise.and_then(|noise| NoiseModel::new(value_kind, noise, step));
     let estimated = || {
         let rounding = estimator.rounding.unwrap_or(Rounding::NONE);
         let errors = estimator.scales.errors(space, &rounding).unwrap_or(Errors::NONE);
-        Some(NoiseModel::new(measure, errors.times(errors.white.hypot(errors.whole), space), step)?.of_scatter())
+        Some(NoiseModel::new(value_kind, errors.times(errors.white.hypot(errors.whole), space), step)?.of_scatter())
     };
     stated.or_else(estimated).expect("an estimate is of the map's own kind")
 }

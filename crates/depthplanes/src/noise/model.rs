@@ -7,7 +7,7 @@ use super::lanes::{LANES, Lanes, lanes};
 use super::rounding::{Rounding, steady};
 use super::sensor_noise::SensorNoise;
 use super::space::Space;
-use crate::camera::Measure;
+use crate::camera::ValueKind;
 
 /// Variance of one pixel's q: the sensor's own error and the rounding of its values.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,22 +35,22 @@ pub struct NoiseModel {
 const ROUNDING: f64 = 0.5;
 
 impl NoiseModel {
-    /// The model of a map whose numbers mean `measure` and come in steps of `step` map units (0 for values that are not
-    /// rounded). `None` if the noise is stated for another kind of map: of disparity for depth, or of depth for
+    /// The model of a map whose numbers are of that `value_kind` and come in steps of `step` map units (0 for values
+    /// that are not rounded). `None` if the noise is stated for another kind of map: of disparity for depth, or of depth for
     /// disparity of an unknown rig.
-    pub fn new(measure: Measure, noise: SensorNoise, step: f64) -> Option<Self> {
-        let (slope, offset) = match (measure, noise) {
-            (Measure::Depth { .. }, SensorNoise::Value { .. }) => return None,
-            (Measure::Depth { .. }, _) => (1.0, 0.0),
-            (Measure::InverseDepth { slope, offset }, _) => (slope, offset),
-            (Measure::Disparity, SensorNoise::Value { .. }) => (f64::NAN, f64::NAN),
-            (Measure::Disparity, _) => return None,
+    pub fn new(value_kind: ValueKind, noise: SensorNoise, step: f64) -> Option<Self> {
+        let (slope, offset) = match (value_kind, noise) {
+            (ValueKind::Depth { .. }, SensorNoise::Value { .. }) => return None,
+            (ValueKind::Depth { .. }, _) => (1.0, 0.0),
+            (ValueKind::InverseDepth { slope, offset }, _) => (slope, offset),
+            (ValueKind::Disparity, SensorNoise::Value { .. }) => (f64::NAN, f64::NAN),
+            (ValueKind::Disparity, _) => return None,
         };
         let smooth = match noise {
             SensorNoise::Value { .. } => SensorNoise::Value { sigma: 0.0 },
             _ => SensorNoise::Depth { base: 0.0, growth: 0.0 },
         };
-        let space = Space::of(measure);
+        let space = Space::of(value_kind);
         let rounding = Rounding::of_values(step, space);
         Some(NoiseModel {
             noise,

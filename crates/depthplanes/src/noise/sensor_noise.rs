@@ -43,7 +43,7 @@ impl SensorNoise {
     }
 
     /// Standard deviation of depth at range `depth_m`, metres; `None` for [`SensorNoise::Value`], which takes a
-    /// measure to become depth ([`super::NoiseModel::depth_sigma_m`]).
+    /// value kind to become depth ([`super::NoiseModel::depth_sigma_m`]).
     pub fn depth_sigma_m(&self, depth_m: f64) -> Option<f64> {
         match self {
             SensorNoise::Depth { base, growth } => Some(base + growth * depth_m * depth_m),

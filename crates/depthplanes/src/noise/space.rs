@@ -1,6 +1,6 @@
 //! The space where planes are affine.
 
-use crate::camera::Measure;
+use crate::camera::ValueKind;
 
 /// Largest q that counts as measured: sums of its squares fit single precision. As depth it is a femtometre.
 pub(crate) const LARGEST_Q: f32 = 1e15;
@@ -19,18 +19,18 @@ pub enum Space {
 
 impl Space {
     /// The space for a map whose numbers mean that.
-    pub fn of(measure: Measure) -> Self {
-        match measure {
-            Measure::Depth { metres } => Space::InverseDepth { metres },
-            Measure::InverseDepth { .. } | Measure::Disparity => Space::Value,
+    pub fn of(value_kind: ValueKind) -> Self {
+        match value_kind {
+            ValueKind::Depth { metres } => Space::InverseDepth { metres },
+            ValueKind::InverseDepth { .. } | ValueKind::Disparity => Space::Value,
         }
     }
 
     /// q of a point infinitely far away. Disparity whose offset nobody states is taken to have none.
-    pub(crate) fn at_infinity(measure: Measure) -> f64 {
-        match measure {
-            Measure::InverseDepth { slope, offset } => -offset / slope,
-            Measure::Depth { .. } | Measure::Disparity => 0.0,
+    pub(crate) fn at_infinity(value_kind: ValueKind) -> f64 {
+        match value_kind {
+            ValueKind::InverseDepth { slope, offset } => -offset / slope,
+            ValueKind::Depth { .. } | ValueKind::Disparity => 0.0,
         }
     }
 

@@ -26,7 +26,7 @@ pub const DEFAULT_TOLERANCE_PX: f64 = 1.5;
 ///     1000, 1000, 1000, 1000, 2000,
 ///     1000, 1000, 1000, 1000, 2000,
 /// ];
-/// let mut detector = Detector::new(Ngaf::default().theta(1.0).min(3))?;
+/// let mut detector = Detector::new(Ngaf::default().theta(1.0).min_pixels(3))?;
 /// let found = detector.detect(DepthView::new(&depth_mm, 5, 4)?)?;
 /// let mut outliner = Outliner::new(0.0)?;
 /// let outlines = outliner.outline(found, None)?;
@@ -80,7 +80,7 @@ impl Outliner {
     /// ```
     /// use depthplanes::{DepthView, Detector, Ngaf, outline::Outliner};
     /// let depth_mm = [1000u16, 1000, 1000, 1000, 0, 1000, 1000, 1000, 1000]; // one pixel is missing
-    /// let mut detector = Detector::new(Ngaf::default().min(3))?;
+    /// let mut detector = Detector::new(Ngaf::default().min_pixels(3))?;
     /// let found = detector.detect(DepthView::new(&depth_mm, 3, 3)?)?;
     /// let outlines = Outliner::default().min_hole_px(2).outline(found, None)?.clone();
     /// assert_eq!(outlines.get(1).unwrap().polygons().next().unwrap().holes().len(), 0);

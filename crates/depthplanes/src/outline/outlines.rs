@@ -6,7 +6,7 @@ use super::corner::{Corner, point};
 use super::hull::Huller;
 use super::rectangle::{Fitter, Rectangle};
 use super::trace::TracedRing;
-use crate::camera::Hessian;
+use crate::camera::HessianNormalForm;
 use crate::detection::Plane;
 use crate::sensor::Sensor;
 use std::ops::Range;
@@ -37,7 +37,7 @@ pub(super) struct PlaneRecord {
     pub(super) label: u16,
     pub(super) rings: Range<usize>,
     pub(super) hull: Range<usize>,
-    pub(super) surface: Option<Hessian>,
+    pub(super) surface: Option<HessianNormalForm>,
     pub(super) rectangle_px: Rectangle<2>,
     pub(super) rectangle_m: Option<Rectangle<3>>,
 }
@@ -96,7 +96,7 @@ impl Outlines {
     }
 
     /// The plane in metres, if each corner since `first` lies at a finite distance on it.
-    fn surface(&self, plane: &Plane, first: Ends) -> Option<Hessian> {
+    fn surface(&self, plane: &Plane, first: Ends) -> Option<HessianNormalForm> {
         let surface = plane.metric.filter(|metric| metric.area_m2.is_some())?.plane;
         let camera = self.camera?;
         let mut corners = self.corners[first.corners..].iter().chain(&self.hulls[first.hulls..]);
@@ -166,7 +166,7 @@ impl<'a> Outline<'a> {
         self.plane.rectangle_m
     }
 
-    fn surface(&self) -> Option<(Hessian, Sensor)> {
+    fn surface(&self) -> Option<(HessianNormalForm, Sensor)> {
         self.plane.surface.zip(self.all.camera)
     }
 }
@@ -199,7 +199,7 @@ impl<'a> Polygon<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Ring<'a> {
     corners: &'a [Corner],
-    surface: Option<(Hessian, Sensor)>,
+    surface: Option<(HessianNormalForm, Sensor)>,
 }
 
 impl<'a> Ring<'a> {

@@ -5,7 +5,7 @@
 //! round.
 
 use super::corner::{Corner, point};
-use crate::camera::Hessian;
+use crate::camera::HessianNormalForm;
 use crate::sensor::Sensor;
 
 /// A rectangle in N dimensions: pixels on the picture, metres in camera coordinates on the plane.
@@ -55,7 +55,7 @@ impl Fitter {
     }
 
     /// The rectangle around a hull on the plane that a camera sees.
-    pub(super) fn on_plane(&mut self, hull: &[Corner], (plane, camera): &(Hessian, Sensor)) -> Rectangle<3> {
+    pub(super) fn on_plane(&mut self, hull: &[Corner], (plane, camera): &(HessianNormalForm, Sensor)) -> Rectangle<3> {
         let on_plane = |&corner: &Corner| plane.point_seen_by(point(corner), camera).unwrap_or([0.0; 3]);
         let origin = hull.first().map_or([0.0; 3], on_plane);
         let basis = basis(plane.normal);

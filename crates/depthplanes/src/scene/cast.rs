@@ -9,7 +9,7 @@ use super::exact::{Vec3, dot, scale, sub, unit};
 use super::pose::{Camera, Extrinsics};
 use super::shape::{Bounds, Cylinder, Shape, area_vector};
 use super::surfaces::{Scene, Strip, Surface};
-use crate::camera::{Hessian, Intrinsics};
+use crate::camera::{HessianNormalForm, Intrinsics};
 
 /// What the camera sees, without any sensor: one entry for each pixel.
 #[derive(Clone, Debug, Default)]
@@ -37,7 +37,7 @@ pub(super) struct Target {
 
 /// The plane of a flat surface in the eye's coordinates; `None` for curved surfaces, and for planes
 /// without an area or seen exactly edge on.
-pub(super) fn plane_of(surface: &Surface, eye: &Extrinsics) -> Option<Hessian> {
+pub(super) fn plane_of(surface: &Surface, eye: &Extrinsics) -> Option<HessianNormalForm> {
     let (point, normal) = match surface {
         Surface::Facet { parts } => {
             let corners = seen_from(eye, parts.first()?);
@@ -48,7 +48,7 @@ pub(super) fn plane_of(surface: &Surface, eye: &Extrinsics) -> Option<Hessian> {
     };
     let distance = -dot(normal, point);
     let toward = if distance < 0.0 { -1.0 } else { 1.0 };
-    (distance.abs() > 1e-9).then(|| Hessian { normal: scale(normal, toward), distance: distance * toward })
+    (distance.abs() > 1e-9).then(|| HessianNormalForm { normal: scale(normal, toward), distance: distance * toward })
 }
 
 fn seen_from(eye: &Extrinsics, points: &[Vec3]) -> Vec<Vec3> {

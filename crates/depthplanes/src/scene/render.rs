@@ -32,6 +32,7 @@ pub fn render(scene: &Scene, camera: &Camera, sensor: SensorModel, seed: u64) ->
     let seen = cast(scene, camera);
     let pixels = sensor.pixels(&Exposure { scene, camera, seen: &seen }, seed);
     let truth = Truth::new(scene, camera, seen);
-    let sensor = Sensor { measure: sensor.measure(camera), intrinsics: Some(camera.intrinsics), ..Sensor::default() };
+    let sensor =
+        Sensor { value_kind: sensor.value_kind(camera), intrinsics: Some(camera.intrinsics), ..Sensor::default() };
     Ok(SceneFrame { width: camera.width, height: camera.height, pixels, sensor, truth })
 }

@@ -15,7 +15,7 @@ pub use error::SensorError;
 
 use super::frame::ScenePixels;
 use super::pose::{Camera, KINECT_FOCAL_PX};
-use crate::camera::Measure;
+use crate::camera::ValueKind;
 use crate::error::{Error, Result};
 use crate::util::random::Random;
 use depth_camera::{DepthCamera, Output};
@@ -129,18 +129,18 @@ impl SensorModel {
         SENSORS.iter().find(|row| row.model == self).expect("every model has its row")
     }
 
-    /// What the numbers of its maps mean.
-    pub fn measure(self, camera: &Camera) -> Measure {
+    /// The kind of the numbers of its maps.
+    pub fn value_kind(self, camera: &Camera) -> ValueKind {
         let disparity = |units: f64, baseline_m: f64| {
             let units_m = units * camera.intrinsics.fx.abs() * baseline_m;
-            Measure::InverseDepth { slope: 1.0 / units_m, offset: 0.0 }
+            ValueKind::InverseDepth { slope: 1.0 / units_m, offset: 0.0 }
         };
         match self {
-            SensorModel::Clean => Measure::Depth { metres: 1.0 },
+            SensorModel::Clean => ValueKind::Depth { metres: 1.0 },
             SensorModel::Disparity8 => disparity(UNITS_PER_PIXEL, PAIR_BASELINE_M),
             _ => match self.depth_camera().map(|row| row.output) {
                 Some(Output::Disparity { units, baseline_m }) => disparity(units, baseline_m),
-                Some(Output::Millimetres) | None => Measure::Depth { metres: 0.001 },
+                Some(Output::Millimetres) | None => ValueKind::Depth { metres: 0.001 },
             },
         }
     }
@@ -205,10 +205,10 @@ impl SensorModel {
 /// A quarter of a pixel per unit; 0 for what the other camera does not see, what 8 bits cannot hold (nearer than 0.91
 /// m at 640 columns) and disparities below half a unit.
 fn disparities(exposure: &Exposure<'_>) -> Vec<u8> {
-    let measure = SensorModel::Disparity8.measure(exposure.camera);
+    let value_kind = SensorModel::Disparity8.value_kind(exposure.camera);
     let hidden = exposure.hidden_from_right(PAIR_BASELINE_M, true);
     let unit = |(&z, hidden): (&f64, bool)| {
-        let value = (measure.value(z).unwrap_or(0.0) + 0.5).floor();
+        let value = (value_kind.value(z).unwrap_or(0.0) + 0.5).floor();
         if !hidden && (1.0..=255.0).contains(&value) { value as u8 } else { 0 }
     };
     exposure.seen.depth_m.iter().zip(hidden).map(unit).collect()

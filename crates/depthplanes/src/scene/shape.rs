@@ -3,7 +3,7 @@
 
 use super::exact::{Vec3, add, cross, dot, scale, sub, unit};
 use super::surfaces::Strip;
-use crate::camera::{Hessian, Intrinsics};
+use crate::camera::{HessianNormalForm, Intrinsics};
 
 /// Depth along the optical axis at which boxes in the picture are cut, metres.
 const NEAR_M: f64 = 1e-3;
@@ -36,7 +36,7 @@ const EDGE: f64 = -1e-12;
 
 impl Shape {
     /// One part of a facet; `None` if it has no area.
-    pub(super) fn polygon(plane: &Hessian, corners: &[Vec3]) -> Option<Self> {
+    pub(super) fn polygon(plane: &HessianNormalForm, corners: &[Vec3]) -> Option<Self> {
         let area = unit(area_vector(corners))?;
         // Edges are turned so that the inside is positive whichever way the corners run.
         let side = if dot(area, plane.normal) < 0.0 { 1.0 } else { -1.0 };
@@ -45,7 +45,7 @@ impl Shape {
         Some(Shape::Polygon { inverse: inverse(plane), edges })
     }
 
-    pub(super) fn disc(plane: &Hessian, centre: Vec3, radius: f64) -> Self {
+    pub(super) fn disc(plane: &HessianNormalForm, centre: Vec3, radius: f64) -> Self {
         Shape::Disc { inverse: inverse(plane), centre, radius }
     }
 
@@ -123,7 +123,7 @@ pub(super) fn area_vector(corners: &[Vec3]) -> Vec3 {
     corners.windows(2).fold([0.0; 3], |sum, pair| add(sum, cross(sub(pair[0], origin), sub(pair[1], origin))))
 }
 
-fn inverse(plane: &Hessian) -> Vec3 {
+fn inverse(plane: &HessianNormalForm) -> Vec3 {
     plane.normal.map(|x| -x / plane.distance)
 }
 

@@ -3,7 +3,7 @@
 use super::cast::{Cast, plane_of};
 use super::pose::Camera;
 use super::surfaces::{Scene, Surface};
-use crate::camera::Hessian;
+use crate::camera::HessianNormalForm;
 
 /// What a camera sees of a scene, free of noise; row by row, `width * height` entries.
 ///
@@ -40,7 +40,7 @@ pub struct TruthPlane {
     /// Number of its surface in the scene, from 1.
     pub surface: u32,
     /// Where it is, camera coordinates, metres.
-    pub plane: Hessian,
+    pub plane: HessianNormalForm,
     /// Pixels that carry the label.
     pub pixel_count: usize,
 }

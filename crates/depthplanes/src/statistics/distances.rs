@@ -1,6 +1,6 @@
 //! The second pass over a plane's pixels: their distances from it, and how much of its area is seen.
 
-use super::least_squares::{AffineFit, LANES, Lanes, hessian, in_lanes, metric_covariance};
+use super::least_squares::{AffineFit, LANES, Lanes, hessian_normal_form, in_lanes, metric_covariance};
 use super::plane_sums::PlaneSums;
 use crate::camera::Intrinsics;
 use crate::components::selection::LabelledRun;
@@ -124,7 +124,7 @@ impl Distances {
     pub(super) fn metric(&self, tally: &PlaneSums, seen: &Seen<'_>) -> Option<MetricPlane> {
         let camera = &seen.sensor.intrinsics?;
         let fit = tally.inverse_depth.filter(|_| !self.behind_infinity)?;
-        let plane = hessian(&fit, camera)?;
+        let plane = hessian_normal_form(&fit, camera)?;
         let n = tally.pixel_count as f64;
         let by_noise = |noise| tally.known(seen.sensor)?.covariance(noise);
         let (covariance, covariance_from) = match seen.noise.and_then(by_noise) {

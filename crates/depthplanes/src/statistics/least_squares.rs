@@ -5,7 +5,7 @@
 //! about an origin near the points, so that no digits are lost far from the image's corner; adding
 //! two sums is fitting the union.
 
-use crate::camera::{Hessian, Intrinsics, ray_coefficients};
+use crate::camera::{HessianNormalForm, Intrinsics, ray_coefficients};
 
 /// Sums over points (u, v, q) relative to an origin of the owner's choice.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -355,7 +355,7 @@ fn propagate<const N: usize>(jacobian: &[[f64; 3]; N], covariance: &[[f64; 3]; 3
 /// Covariance of (nx, ny, nz, distance) of the plane whose inverse depth (1/m) has the coefficients `abc` with that
 /// covariance.
 ///
-/// m, as in [`Hessian::from_inverse_depth`], is linear in (a, b, c). If it is off by s |m| along m and by t |m| across
+/// m, as in [`HessianNormalForm::from_inverse_depth`], is linear in (a, b, c). If it is off by s |m| along m and by t |m| across
 /// it, the normal `-m / |m|` moves by `-t + s t` and the distance `1 / |m|` by `(-s + s^2 - t . t / 2) / |m|`, to
 /// second order. The first order alone is not enough: a plane turns about its pixels, so that one combination of
 /// normal and distance has hardly any error of first order, and all of its error is of second order where the normal
@@ -399,6 +399,6 @@ fn multiply(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
 }
 
 /// The metric plane of an inverse-depth fit (1/m).
-pub fn hessian(fit: &AffineFit, camera: &Intrinsics) -> Option<Hessian> {
-    Hessian::from_inverse_depth(fit.abc, camera)
+pub fn hessian_normal_form(fit: &AffineFit, camera: &Intrinsics) -> Option<HessianNormalForm> {
+    HessianNormalForm::from_inverse_depth(fit.abc, camera)
 }

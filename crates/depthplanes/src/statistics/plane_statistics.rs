@@ -8,7 +8,7 @@ use super::distances::{Distances, Seen};
 use super::least_squares::AffineFit;
 use super::parts::{ByLabel, runs_of_parts};
 use super::plane_sums::{Margin, PlaneSums, Sums, sum};
-use crate::camera::Measure;
+use crate::camera::ValueKind;
 use crate::components::selection::LabelledRun;
 use crate::detection::{MapFit, Plane, share};
 use crate::limits::MAX_PLANES;
@@ -47,8 +47,8 @@ impl PlaneStatistics {
     ) {
         let inner = Margin { margin, width: map.width() as u32, height: map.height() as u32 };
         // Planes of depth maps are affine in inverse depth; all others in the map's own values.
-        let inverse = match (sensor.intrinsics, sensor.measure) {
-            (Some(_), Measure::Depth { metres }) => {
+        let inverse = match (sensor.intrinsics, sensor.value_kind) {
+            (Some(_), ValueKind::Depth { metres }) => {
                 let per_metre = 1.0 / metres;
                 Some(move |value: T| per_metre / value.into())
             }
@@ -121,8 +121,8 @@ impl PlaneStatistics {
         planes.clear();
         planes.reserve(self.tallies.capacity());
         self.distances.clear();
-        match (sensor.intrinsics, sensor.measure) {
-            (Some(camera), Measure::Depth { metres }) => {
+        match (sensor.intrinsics, sensor.value_kind) {
+            (Some(camera), ValueKind::Depth { metres }) => {
                 self.measure_distances(
                     map,
                     runs,
@@ -134,7 +134,7 @@ impl PlaneStatistics {
                     distances.point = tally.points(metres, &camera);
                 }
             }
-            (Some(camera), Measure::InverseDepth { slope, offset }) => {
+            (Some(camera), ValueKind::InverseDepth { slope, offset }) => {
                 let inverse_depth = |value: T| slope * value.into() + offset;
                 self.measure_distances(
                     map,

@@ -3,7 +3,7 @@
 use super::covariance::Known;
 use super::least_squares::{AffineFit, Moments, ValueSums};
 use super::parts::ByLabel;
-use crate::camera::{Intrinsics, Measure};
+use crate::camera::{Intrinsics, ValueKind};
 use crate::components::selection::LabelledRun;
 use crate::detection::PixelBox;
 use crate::map::{DepthView, Pixel};
@@ -127,10 +127,10 @@ impl PlaneSums {
         let places = &self.value.sums;
         self.centroid = [u + places.u / places.n, v + places.v / places.n];
         self.fit = self.value.fit(self.origin);
-        self.inverse_depth = match sensor.measure {
-            Measure::Depth { .. } => self.inverse.fit(self.origin),
-            Measure::InverseDepth { slope, offset } => self.fit.map(|fit| fit.scaled(slope, offset)),
-            Measure::Disparity => None,
+        self.inverse_depth = match sensor.value_kind {
+            ValueKind::Depth { .. } => self.inverse.fit(self.origin),
+            ValueKind::InverseDepth { slope, offset } => self.fit.map(|fit| fit.scaled(slope, offset)),
+            ValueKind::Disparity => None,
         };
     }
 
@@ -146,10 +146,10 @@ impl PlaneSums {
     /// Its plane in the space where the noise is known.
     pub(super) fn known(&self, sensor: &Sensor) -> Option<Known> {
         // Noise is known in map units where these are affine in inverse depth.
-        let (fit, slope) = match sensor.measure {
-            Measure::Depth { .. } => (self.inverse_depth?, 1.0),
-            Measure::InverseDepth { slope, .. } => (self.fit?, slope),
-            Measure::Disparity => return None,
+        let (fit, slope) = match sensor.value_kind {
+            ValueKind::Depth { .. } => (self.inverse_depth?, 1.0),
+            ValueKind::InverseDepth { slope, .. } => (self.fit?, slope),
+            ValueKind::Disparity => return None,
         };
         let PixelBox { u_min, v_min, u_max, v_max } = self.bounding_box;
         let extent = [u_max - u_min + 1, v_max - v_min + 1].map(f64::from);

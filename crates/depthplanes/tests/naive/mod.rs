@@ -43,7 +43,7 @@ pub fn flood(map: &[f64], width: usize, ok: impl Fn(f64) -> bool, theta: f64, si
     group
 }
 
-/// Labels of the groups with more than `min` pixels: by decreasing size, then by first pixel.
+/// Labels of the groups with more than `min-pixels` pixels: by decreasing size, then by first pixel.
 pub fn select(group: &[Option<usize>], min: usize) -> Vec<u16> {
     let mut size = vec![0; group.len()];
     group.iter().flatten().for_each(|&first| size[first] += 1);

@@ -67,7 +67,7 @@ fn items(folder: &Path) -> Outcome<Vec<Item>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use depthplanes::Measure;
+    use depthplanes::ValueKind;
     use depthplanes_io::outputs::grey16_png;
 
     /// A folder with some files; each map has the pixels 5000 and 65535.
@@ -87,7 +87,7 @@ mod tests {
         let items = items(folder).unwrap();
         assert_eq!(items.len(), 1);
         let frame = (items[0].frame)().unwrap();
-        let Measure::Depth { metres } = frame.sensor.measure else { panic!("{:?}", frame.sensor) };
+        let ValueKind::Depth { metres } = frame.sensor.value_kind else { panic!("{:?}", frame.sensor) };
         let valid = depthplanes::with_view!(frame.view().unwrap(), view => view.valid_pixels());
         std::fs::remove_dir_all(folder).unwrap();
         (metres, valid, frame.sensor.intrinsics.is_some())

@@ -3,7 +3,7 @@
 use super::dataset::{Dataset, Item};
 use super::folder::{files, name_of, needed, options, truth};
 use crate::failure::Outcome;
-use depthplanes::Measure;
+use depthplanes::ValueKind;
 use depthplanes::noise::SensorNoise;
 use depthplanes_io::{Frame, Pixels, ReadOptions};
 use std::path::{Path, PathBuf};
@@ -42,7 +42,7 @@ fn turned(path: &Path, options: &ReadOptions) -> Outcome<Frame> {
     if let Pixels::U8(grey) = &frame.pixels {
         let depth = |&grey: &u8| if grey == 0 { 0 } else { FARTHEST - u16::from(grey) };
         frame.pixels = Pixels::U16(grey.iter().map(depth).collect());
-        frame.sensor.measure = Measure::depth(0.001)?;
+        frame.sensor.value_kind = ValueKind::depth(0.001)?;
     }
     Ok(frame)
 }

@@ -83,7 +83,7 @@ fn truth(path: PathBuf, coplanar: Vec<Vec<u16>>) -> Load<TruthOf> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use depthplanes::Measure;
+    use depthplanes::ValueKind;
     use depthplanes_io::outputs::grey16_png;
 
     /// A folder with one frame and its JSON file.
@@ -105,7 +105,7 @@ mod tests {
             let items = items(&folder, "real", with_preset).unwrap();
             assert_eq!(items.len(), 1);
             let frame = (items[0].frame)().unwrap();
-            assert_eq!(frame.sensor.measure, Measure::Depth { metres: 0.001 });
+            assert_eq!(frame.sensor.value_kind, ValueKind::Depth { metres: 0.001 });
             assert_eq!((frame.sensor.intrinsics.unwrap().fy, frame.missing), (501.0, Some(7000.0)));
             assert_eq!((items[0].truth.as_ref().unwrap())().unwrap().partial, Some(vec![vec![1, 2]]));
             frame.sensor.smooth_noise.is_some()

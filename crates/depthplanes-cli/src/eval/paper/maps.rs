@@ -117,9 +117,10 @@ pub(super) fn section(sources: &[Source]) -> Section {
     let text = format!(
         "The paper's five maps of Middlebury are true disparities, of the left view, in grey levels; theta is 1 there and \
          nothing is filled (sections 3b, 3c). Its own frames of a Kinect are not public; these are others, in the units \
-         of their files, with theta 2 and gaps filled by a window of 5. A plane has more than min pixels: 32, 64, 128 or \
-         256 (section 3d); all methods get the same min and have their defaults otherwise. The other \
-         methods know a Kinect's nominal camera and noise for recorded frames, the camera alone for synthetic ones.{which}"
+         of their files, with theta 2 and gaps filled by a window of 5. A plane has more than min-pixels pixels; \
+         the paper calls it min and takes 32, 64, 128 or 256 (section 3d). All methods get the same min and have their \
+         defaults otherwise. The other methods know a Kinect's nominal camera and noise for recorded frames, the camera \
+         alone for synthetic ones.{which}"
     );
     let line = |source: &Source| {
         let Map { set, file, scene, .. } = source.map;

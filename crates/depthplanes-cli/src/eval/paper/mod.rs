@@ -98,11 +98,11 @@ fn trials(wanted: &Paper, sources: &[Source], data: Option<&Path>) -> Outcome<[T
     ])
 }
 
-/// Each method with each `min`, the entries of a method together.
+/// Each method with each `min`, as the paper calls `min-pixels`, the entries of a method together.
 fn entries(methods: &[String], settings: Settings, threads: usize) -> Outcome<Vec<Entry>> {
     let mut entries = Vec::new();
     for min in MINS {
-        let given = [("min", f64::from(min)), ("theta", settings.theta), ("window", settings.window)];
+        let given = [("min-pixels", f64::from(min)), ("theta", settings.theta), ("window", settings.window)];
         let entry = |recipe: Recipe| Entry { label: label(recipe.method.name, min), recipe };
         entries.extend(Recipe::several(methods, &given, threads)?.into_iter().map(entry));
     }

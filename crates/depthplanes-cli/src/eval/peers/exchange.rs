@@ -4,7 +4,7 @@
 //! is unknown, depth is in median depths and the camera is [`Intrinsics::assumed`], as for `ransac`.
 
 use crate::failure::{Failure, Outcome};
-use depthplanes::{DepthView, Detection, Intrinsics, Measure, Pixel, describe_labels, with_view};
+use depthplanes::{DepthView, Detection, Intrinsics, Pixel, ValueKind, describe_labels, with_view};
 use depthplanes_io::formats::DecodeOptions;
 use depthplanes_io::outputs::{map_npy, write_file};
 use depthplanes_io::{Frame, LabelImage, Pixels, read_labels};
@@ -26,8 +26,8 @@ pub(super) struct Camera {
 /// A disk that refuses.
 pub(super) fn put(frame: &Frame, folder: &Path) -> Outcome<(Camera, bool)> {
     let (width, height) = (frame.width, frame.height);
-    let inverse: Vec<f64> = with_view!(frame.view()?, view => inverse_depths(&view, frame.sensor.measure));
-    let is_metric = frame.sensor.intrinsics.is_some() && frame.sensor.measure != Measure::Disparity;
+    let inverse: Vec<f64> = with_view!(frame.view()?, view => inverse_depths(&view, frame.sensor.value_kind));
+    let is_metric = frame.sensor.intrinsics.is_some() && frame.sensor.value_kind != ValueKind::Disparity;
     let median = if is_metric { 1.0 } else { median(&inverse) };
     let depth = inverse.iter().map(|&inverse| if inverse > 0.0 { (median / inverse) as f32 } else { 0.0 }).collect();
     write_file(&folder.join("values.npy"), &map_npy(width, height, &valid_values(frame)?))?;
@@ -38,11 +38,11 @@ pub(super) fn put(frame: &Frame, folder: &Path) -> Outcome<(Camera, bool)> {
 }
 
 /// What is affine in inverse depth, for each pixel; 0 where there is nothing in front of the camera.
-fn inverse_depths<T: Pixel>(view: &DepthView<'_, T>, measure: Measure) -> Vec<f64> {
-    let inverse = |value: T| match measure {
+fn inverse_depths<T: Pixel>(view: &DepthView<'_, T>, value_kind: ValueKind) -> Vec<f64> {
+    let inverse = |value: T| match value_kind {
         _ if !view.validity().holds(value) => 0.0,
-        Measure::Disparity => value.into().max(0.0),
-        _ => measure.inverse_depth(value.into()).unwrap_or(0.0),
+        ValueKind::Disparity => value.into().max(0.0),
+        _ => value_kind.inverse_depth(value.into()).unwrap_or(0.0),
     };
     view.rows().flatten().map(|&value| inverse(value)).collect()
 }

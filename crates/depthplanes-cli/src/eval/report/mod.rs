@@ -132,7 +132,7 @@ fn facts(rows: &[&Row]) -> Vec<[String; 2]> {
     facts
 }
 
-/// Each parameter once with all the values that it has: `min 32 / 64, theta 1`.
+/// Each parameter once with all the values that it has: `min-pixels 32 / 64, theta 1`.
 fn values(written: &[String]) -> String {
     let pairs = || written.iter().flat_map(|all| all.split(", ")).map(|one| one.split_once(' ').unwrap_or((one, "")));
     let of = |name: String| {

@@ -9,7 +9,7 @@ use super::merge::Region;
 use crate::baselines::affine::Affine;
 use crate::limits::MAX_PLANES;
 
-/// Regions of half of `min` pixels or fewer get no number. It is half, since the rest of a plane may be in blocks
+/// Regions of half of `min-pixels` pixels or fewer get no number. It is half, since the rest of a plane may be in blocks
 /// where other planes are described.
 pub(super) fn assign(
     affine: &Affine,
@@ -17,7 +17,7 @@ pub(super) fn assign(
     patches: &[u32],
     regions: &[Region],
     region_of_patch: &[usize],
-    min: usize,
+    min_pixels: usize,
 ) -> Vec<u16> {
     let larger = larger(regions);
     let region = |at: usize| (patches[at] as usize).checked_sub(1).map(|patch| region_of_patch[patch]);
@@ -36,7 +36,7 @@ pub(super) fn assign(
     let mut numbers = vec![0; regions.len()];
     let mut planes = Vec::new();
     for (at, region) in regions.iter().enumerate() {
-        let is_kept = saved[at] > code.plane() && region.pixels > min / 2 && planes.len() < MAX_PLANES;
+        let is_kept = saved[at] > code.plane() && region.pixels > min_pixels / 2 && planes.len() < MAX_PLANES;
         if let Some(plane) = region.plane.filter(|_| is_kept) {
             planes.push(plane);
             numbers[at] = planes.len() as u16;

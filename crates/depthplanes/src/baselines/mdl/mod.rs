@@ -13,7 +13,7 @@ mod merge;
 
 use super::baseline::{Baseline, Input, SEED, Segmented, Values};
 use crate::map::with_view;
-use crate::methods::extraction::{MIN, STAGES};
+use crate::methods::extraction::{MIN_PIXELS, STAGES};
 use crate::methods::method::Job;
 use crate::methods::noise::{NOISE, NOISE_GROWTH, of_kind, stated};
 use crate::methods::parameter::{Param, ParamKind};
@@ -22,7 +22,7 @@ use crate::util::random::Random;
 use code::Code;
 
 pub(super) struct Mdl {
-    min: usize,
+    min_pixels: usize,
     noise: f64,
     growth: f64,
     side: usize,
@@ -34,11 +34,12 @@ impl Baseline for Mdl {
     const ABOUT: &'static str = "Finds the planes that describe the map's blocks in the fewest bits, and merges them (Yang and Förstner 2010), from its description.";
     const STAGES: &'static [&'static str] = &["noise", "blocks", "merge", STAGES[0], STAGES[1], STAGES[2], STAGES[3]];
     const PARAMS: &'static [Param] = &[
-        MIN,
+        MIN_PIXELS,
         Param { source: Some("Yang and Förstner 2010"), ..NOISE },
         NOISE_GROWTH,
         Param {
             name: "block",
+            alias: None,
             default: 32.0,
             min: 8.0,
             max: 1024.0,
@@ -52,7 +53,7 @@ impl Baseline for Mdl {
 
     fn new(values: &Values<'_>) -> Self {
         Mdl {
-            min: values.whole("min"),
+            min_pixels: values.whole(MIN_PIXELS.name),
             noise: values.of("noise"),
             growth: values.of("noise-growth"),
             side: values.whole("block"),
@@ -67,7 +68,7 @@ impl Baseline for Mdl {
         let (patches, regions) = block::describe(affine, &code, self.side, &mut Random::new(self.seed));
         job.done("blocks");
         let (regions, region_of_patch) = merge::merge(regions, &code);
-        let image = assign::assign(affine, &code, &patches, &regions, &region_of_patch, self.min);
+        let image = assign::assign(affine, &code, &patches, &regions, &region_of_patch, self.min_pixels);
         job.done("merge");
         Segmented { image, noise: Some(noise) }
     }
@@ -76,17 +77,17 @@ impl Baseline for Mdl {
 impl Mdl {
     /// The noise stated, the sensor's, or that of the map.
     fn noise(&self, map: &Input<'_>) -> NoiseModel {
-        let measure = map.sensor.measure;
+        let value_kind = map.sensor.value_kind;
         let step = with_view!(map.view, map => Steps::default().of(&map));
-        let model = |noise| NoiseModel::new(measure, noise, step);
+        let model = |noise| NoiseModel::new(value_kind, noise, step);
         let estimated = || {
             let mut estimator = Estimator::default();
-            estimator.add(map.view, measure).ok()?;
+            estimator.add(map.view, value_kind).ok()?;
             model(estimator.estimate().ok()?.noise)
         };
-        let stated = stated(Space::of(measure), self.noise, self.growth);
+        let stated = stated(Space::of(value_kind), self.noise, self.growth);
         let noise = stated.or(map.sensor.noise).and_then(model).or_else(estimated);
         // Too few blocks tell nothing: then the steps are all there is.
-        noise.or_else(|| model(of_kind(Space::of(measure), 0.0, 0.0))).expect("noise of the map's own kind")
+        noise.or_else(|| model(of_kind(Space::of(value_kind), 0.0, 0.0))).expect("noise of the map's own kind")
     }
 }

@@ -3,7 +3,7 @@
 //!
 //! In: any map; lengths are in metres where unit and camera are known. Out: connected pieces of planes through three
 //! points with normals. The octree over points is a quadtree over pixels here, and pieces are connected in the image.
-//! It stops when the probability of having overlooked a plane of more than `min` pixels is as small as stated. What
+//! It stops when the probability of having overlooked a plane of more than `min-pixels` pixels is as small as stated. What
 //! is nearer to a plane than `epsilon` is part of it, low steps and shallow bends included.
 
 mod draw;
@@ -14,7 +14,7 @@ use super::baseline::{Baseline, Input, SEED, Segmented, Values};
 use super::cloud::Cloud;
 use super::pieces::{EPSILON, Pieces, Tolerance};
 use crate::limits::MAX_PLANES;
-use crate::methods::extraction::{MIN, STAGES};
+use crate::methods::extraction::{MIN_PIXELS, STAGES};
 use crate::methods::method::Job;
 use crate::methods::parameter::{Param, ParamKind};
 use crate::util::random::Random;
@@ -27,7 +27,7 @@ const BATCH: usize = 128;
 const GOOD: f64 = 0.9;
 
 pub(super) struct Ransac {
-    min: usize,
+    min_pixels: usize,
     epsilon: f64,
     cosine: f64,
     overlooked: f64,
@@ -40,10 +40,11 @@ impl Baseline for Ransac {
     const ABOUT: &'static str = "Finds planes by random sampling (Efficient RANSAC, Schnabel et al. 2007, the detector of HSBSR), from its description.";
     const STAGES: &'static [&'static str] = &["points", "search", STAGES[0], STAGES[1], STAGES[2], STAGES[3]];
     const PARAMS: &'static [Param] = &[
-        MIN,
+        MIN_PIXELS,
         EPSILON,
         Param {
             name: "angle",
+            alias: None,
             default: 25.0,
             min: 0.0,
             max: 90.0,
@@ -54,6 +55,7 @@ impl Baseline for Ransac {
         },
         Param {
             name: "overlooked",
+            alias: None,
             default: 0.05,
             min: 0.001,
             max: 0.5,
@@ -64,6 +66,7 @@ impl Baseline for Ransac {
         },
         Param {
             name: "reach",
+            alias: None,
             default: 4.0,
             min: 1.0,
             max: 100.0,
@@ -77,7 +80,7 @@ impl Baseline for Ransac {
 
     fn new(values: &Values<'_>) -> Self {
         Ransac {
-            min: values.whole("min"),
+            min_pixels: values.whole(MIN_PIXELS.name),
             epsilon: values.of("epsilon"),
             // Rounding may not cost a flat wall its points.
             cosine: values.of("angle").to_radians().cos() - 1e-9,
@@ -104,13 +107,13 @@ impl Ransac {
         let mut free = Free::new(cloud, &mut random);
         let mut draws = Draws::new(affine);
         let mut candidates: Vec<Candidate> = Vec::new();
-        while free.len() > self.min && pieces.count() < MAX_PLANES && !pieces.work.is_spent() {
+        while free.len() > self.min_pixels && pieces.count() < MAX_PLANES && !pieces.work.is_spent() {
             pieces.work.count(BATCH * FIRST.min(free.len()));
             candidates.extend((0..BATCH).filter_map(|_| draws.draw(&free, &pieces, &mut random)));
-            candidates.retain(|candidate| candidate.most > self.min as f64);
+            candidates.retain(|candidate| candidate.most > self.min_pixels as f64);
             while let Some(best) = self.best(&mut candidates, &free, &mut pieces, &draws) {
                 let Candidate { plane, samples, .. } = candidates.swap_remove(best);
-                if let Some(size) = pieces.take(&plane, &samples, self.min) {
+                if let Some(size) = pieces.take(&plane, &samples, self.min_pixels) {
                     pieces.work.count(free.len());
                     draws.forget(size as f64 / free.len() as f64);
                     free.retain(&pieces);
@@ -118,7 +121,7 @@ impl Ransac {
                     candidates.iter_mut().for_each(Candidate::restart);
                 }
             }
-            if draws.missed(self.min as f64 + 1.0, free.len()) < self.overlooked {
+            if draws.missed(self.min_pixels as f64 + 1.0, free.len()) < self.overlooked {
                 break;
             }
         }
@@ -147,7 +150,7 @@ impl Ransac {
                 return Some(known);
             }
             candidates[top].refine(free, pieces);
-            if candidates[top].most <= self.min as f64 {
+            if candidates[top].most <= self.min_pixels as f64 {
                 candidates.swap_remove(top);
             }
         }

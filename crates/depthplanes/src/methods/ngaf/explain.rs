@@ -13,7 +13,7 @@ use crate::explanation::{Explanation, Finding, Limit, Verdict};
 use crate::map::with_view;
 use crate::map::{AnyView, DepthView, Pixel};
 use crate::methods::method::{Job, MethodInfo};
-use crate::methods::tries::{Change, Tries, rounded_up, smaller_min};
+use crate::methods::tries::{Change, Tries, lower_min_pixels, rounded_up};
 use crate::statistics::PlaneSums;
 
 pub(super) fn explain(
@@ -135,15 +135,15 @@ impl Trace {
                 self.pixels = groups.sizes()[run.group as usize] as usize;
             }
         });
-        let is_large = self.pixels > self.params.min as usize;
+        let is_large = self.pixels > self.params.min_pixels as usize;
         let finding = Finding::new("select", "its group", if is_large { "large enough" } else { "too small" });
-        let limit = Limit::MoreThan(self.params.min.into());
+        let limit = Limit::MoreThan(self.params.min_pixels.into());
         self.findings.push(finding.with("pixels", self.pixels as f64, "").limit(limit).refusing(!is_large));
         self.place = selection.kept().iter().position(|kept| Some(kept.group) == own);
     }
 
     fn look_at_conditions(&mut self, tally: &PlaneSums) {
-        let Ngaf { max_rms, min_fill, margin, min, .. } = self.params;
+        let Ngaf { max_rms, min_fill, margin, min_pixels, .. } = self.params;
         let rms = tally.fit.map_or(f64::INFINITY, |fit| fit.rms);
         let fill = tally.pixel_count as f64 / tally.bounding_box.area() as f64;
         let conditions = [
@@ -155,7 +155,7 @@ impl Trace {
                 "pixels off the map's edge",
                 tally.inner_pixels as f64,
                 "",
-                Limit::MoreThan(min.into()),
+                Limit::MoreThan(min_pixels.into()),
             ),
         ];
         for (parameter, is_used, name, value, unit, limit) in conditions {
@@ -175,7 +175,7 @@ impl Trace {
         match (label, self.pixels) {
             (0, 0) => Verdict::NotMeasured,
             (0, pixels) => {
-                let small = Verdict::Small { pixels, min: self.params.min, early: false };
+                let small = Verdict::Small { pixels, min_pixels: self.params.min_pixels, early: false };
                 self.dropped.clone().unwrap_or(small)
             }
             _ => Verdict::Plane { label, pixels: out.planes[usize::from(label) - 1].pixel_count, off: None },
@@ -186,7 +186,7 @@ impl Trace {
     fn changes(&self, verdict: &Verdict) -> Vec<Vec<Change>> {
         match *verdict {
             Verdict::NotMeasured => vec![[3.0, 5.0, 9.0, 15.0].map(|window| vec![("window", window)]).to_vec()],
-            Verdict::Small { pixels, .. } => vec![smaller_min(pixels).collect(), self.thetas()],
+            Verdict::Small { pixels, .. } => vec![lower_min_pixels(pixels).collect(), self.thetas()],
             Verdict::Dropped { parameter: "max-rms", value, .. } if value.is_finite() => {
                 vec![vec![vec![("max-rms", rounded_up(value))]]]
             }

@@ -26,7 +26,8 @@ use pipeline::Runner;
 
 pub(super) static INFO: MethodInfo = MethodInfo {
     name: "ngaf",
-    about: "Groups neighbours whose values differ by at most theta; a group of more than `min` pixels is a plane (Hoa, Minh, Dung 2017).",
+    about: "Groups neighbours whose values differ by at most theta; a group of more than `min-pixels` pixels is a \
+            plane (Hoa, Minh, Dung 2017).",
     stages: &["enhance", "group", "select", "fit", "label"],
     tells_curved: false,
     params: PARAMS,

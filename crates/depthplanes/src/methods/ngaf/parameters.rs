@@ -8,6 +8,7 @@ use crate::statistics::PlaneSums;
 pub(super) const PARAMS: &[Param] = &[
     Param {
         name: "theta",
+        alias: None,
         default: 1.0,
         min: 0.0,
         max: f64::MAX,
@@ -17,17 +18,19 @@ pub(super) const PARAMS: &[Param] = &[
         source: Some("paper, 3c"),
     },
     Param {
-        name: "min",
+        name: "min-pixels",
+        alias: Some("min"),
         default: 32.0,
         min: 0.0,
         max: u32::MAX as f64,
         kind: ParamKind::Whole,
         unit: "pixels",
-        meaning: "A group is a plane if it has more pixels than this; the paper takes 32, 64, 128, 256.",
+        meaning: "A group is a plane if it has more pixels than this; the paper calls it min and takes 32, 64, 128, 256.",
         source: Some("paper, 3d"),
     },
     Param {
         name: "window",
+        alias: None,
         default: 0.0,
         min: *WINDOW.start() as f64,
         max: *WINDOW.end() as f64,
@@ -38,6 +41,7 @@ pub(super) const PARAMS: &[Param] = &[
     },
     Param {
         name: "passes",
+        alias: None,
         default: 1.0,
         min: 1.0,
         max: 100.0,
@@ -48,6 +52,7 @@ pub(super) const PARAMS: &[Param] = &[
     },
     Param {
         name: "max-rms",
+        alias: None,
         default: 0.0,
         min: 0.0,
         max: f64::MAX,
@@ -58,6 +63,7 @@ pub(super) const PARAMS: &[Param] = &[
     },
     Param {
         name: "min-fill",
+        alias: None,
         default: 0.0,
         min: 0.0,
         max: 1.0,
@@ -68,12 +74,13 @@ pub(super) const PARAMS: &[Param] = &[
     },
     Param {
         name: "margin",
+        alias: None,
         default: 0.0,
         min: 0.0,
         max: MAX_SIDE as f64,
         kind: ParamKind::Whole,
         unit: "pixels",
-        meaning: "Pixels closer than this to the map's edge do not count towards `min`.",
+        meaning: "Pixels closer than this to the map's edge do not count towards `min-pixels`.",
         source: None,
     },
 ];
@@ -82,7 +89,7 @@ pub(super) const PARAMS: &[Param] = &[
 ///
 /// ```
 /// use depthplanes::{Detector, Ngaf};
-/// let detector = Detector::new(Ngaf::default().theta(2.0).min(256))?;
+/// let detector = Detector::new(Ngaf::default().theta(2.0).min_pixels(256))?;
 /// # Ok::<(), depthplanes::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,8 +99,9 @@ pub(super) const PARAMS: &[Param] = &[
 pub struct Ngaf {
     /// Largest difference between neighbours of one group, map units, 0 and up (section 3c).
     pub theta: f64,
-    /// A group is a plane if it has strictly more pixels than this (section 3d).
-    pub min: u32,
+    /// A group is a plane if it has strictly more pixels than this; the paper calls it min (section 3d).
+    #[cfg_attr(feature = "serde", serde(alias = "min"))]
+    pub min_pixels: u32,
     /// Side of the enhancing window, odd 3..=31, or 0 for no enhancing (section 3b).
     pub window: u32,
     /// How often to enhance, 1..=100. Ours.
@@ -102,22 +110,22 @@ pub struct Ngaf {
     pub max_rms: f64,
     /// Least share of the bounding box that a plane covers, 0..=1; 0 for off. Ours.
     pub min_fill: f64,
-    /// Pixels closer than this to the map's edge do not count towards `min`; 0 for off. Ours.
+    /// Pixels closer than this to the map's edge do not count towards `min-pixels`; 0 for off. Ours.
     pub margin: u32,
 }
 
 impl Ngaf {
     pub(super) fn from_values(values: &[f64]) -> Self {
-        let &[theta, min, window, passes, max_rms, min_fill, margin] = values else {
+        let &[theta, min_pixels, window, passes, max_rms, min_fill, margin] = values else {
             panic!("one value for each row of PARAMS");
         };
-        let (min, window, passes, margin) = (min as u32, window as u32, passes as u32, margin as u32);
-        Ngaf { theta, min, window, passes, max_rms, min_fill, margin }
+        let (min_pixels, window, passes, margin) = (min_pixels as u32, window as u32, passes as u32, margin as u32);
+        Ngaf { theta, min_pixels, window, passes, max_rms, min_fill, margin }
     }
 
     pub(super) fn values(&self) -> [f64; 7] {
-        let &Ngaf { theta, min, window, passes, max_rms, min_fill, margin } = self;
-        [theta, min.into(), window.into(), passes.into(), max_rms, min_fill, margin.into()]
+        let &Ngaf { theta, min_pixels, window, passes, max_rms, min_fill, margin } = self;
+        [theta, min_pixels.into(), window.into(), passes.into(), max_rms, min_fill, margin.into()]
     }
 
     /// Whether a plane may be dropped after it was fitted.
@@ -129,7 +137,7 @@ impl Ngaf {
     pub(super) fn accepts(&self, plane: &PlaneSums) -> bool {
         let flat = self.max_rms == 0.0 || plane.fit.is_some_and(|fit| fit.rms <= self.max_rms);
         let filled = plane.pixel_count as f64 >= self.min_fill * plane.bounding_box.area() as f64;
-        flat && filled && plane.inner_pixels > self.min as usize
+        flat && filled && plane.inner_pixels > self.min_pixels as usize
     }
 }
 
@@ -139,4 +147,4 @@ impl Default for Ngaf {
     }
 }
 
-setters!(Ngaf: theta: f64, min: u32, window: u32, passes: u32, max_rms: f64, min_fill: f64, margin: u32);
+setters!(Ngaf: theta: f64, min_pixels: u32, window: u32, passes: u32, max_rms: f64, min_fill: f64, margin: u32);

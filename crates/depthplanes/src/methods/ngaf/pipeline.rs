@@ -26,7 +26,7 @@ impl Runner {
     /// The method with these parameters.
     pub(super) fn new(params: Ngaf) -> Self {
         let mut runner = Runner { params, ..Runner::default() };
-        runner.components.leave_out_singles(params.min >= 1);
+        runner.components.leave_out_singles(params.min_pixels >= 1);
         runner
     }
 }
@@ -65,7 +65,7 @@ impl Runner {
         let rule = Connectivity::new(map.validity(), params.theta)?;
         let groups = components.group(&map, &rule, job.threads); // section 3c
         job.done("group");
-        selection.select(groups, params.min)?; // section 3d
+        selection.select(groups, params.min_pixels)?; // section 3d
         job.done("select");
         observer.selected(&map, groups, selection);
         let mut runs = selection.runs(groups);

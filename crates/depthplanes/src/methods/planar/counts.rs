@@ -7,7 +7,7 @@
 
 use super::pipeline::Runner;
 use super::source::Source;
-use crate::camera::Measure;
+use crate::camera::ValueKind;
 use crate::detection::{Detection, MapFit};
 use crate::error::Result;
 use crate::explanation::Explanation;
@@ -84,13 +84,15 @@ fn counted<'a, T: Pixel>(
     map: &DepthView<'_, T>,
     sensor: &Sensor,
 ) -> Option<(DepthView<'a, u16>, Counted)> {
-    let Measure::Depth { metres } = sensor.measure else { return None };
+    let ValueKind::Depth { metres } = sensor.value_kind else { return None };
     if T::IS_INTEGER {
         return None;
     }
     let unit_m = UNITS_M.into_iter().find(|unit_m| count(pixels, map, metres / unit_m))?;
-    let counted =
-        Counted { per_unit: metres / unit_m, sensor: Sensor { measure: Measure::Depth { metres: unit_m }, ..*sensor } };
+    let counted = Counted {
+        per_unit: metres / unit_m,
+        sensor: Sensor { value_kind: ValueKind::Depth { metres: unit_m }, ..*sensor },
+    };
     let view = DepthView::new(&pixels[..], map.width(), map.height()).ok()?;
     Some((view, counted))
 }
@@ -151,7 +153,7 @@ mod tests {
     use crate::util::random::Random;
 
     const METRES: Sensor = Sensor {
-        measure: Measure::Depth { metres: 1.0 },
+        value_kind: ValueKind::Depth { metres: 1.0 },
         intrinsics: None,
         distortion: None,
         noise: None,
@@ -163,8 +165,8 @@ mod tests {
         let mut pixels = vec![5; 7]; // of another map
         let view = DepthView::new(map, 50, map.len() / 50).unwrap();
         let (view, counted) = counted(&mut pixels, &view, &sensor)?;
-        let Measure::Depth { metres } = counted.sensor.measure else { panic!("counts are of depth") };
-        let Measure::Depth { metres: unit } = sensor.measure else { panic!("so are they") };
+        let ValueKind::Depth { metres } = counted.sensor.value_kind else { panic!("counts are of depth") };
+        let ValueKind::Depth { metres: unit } = sensor.value_kind else { panic!("so are they") };
         assert!((metres * counted.per_unit / unit - 1.0).abs() < 1e-12);
         Some((view.rows().flatten().copied().collect(), counted.per_unit))
     }
@@ -186,7 +188,7 @@ mod tests {
                 (0.001, counts.iter().map(|&count| (f64::from(count) * 1000.0 / per_metre) as f32).collect()),
             ];
             for (metres, floats) in floats {
-                let sensor = Sensor { measure: Measure::Depth { metres }, ..METRES };
+                let sensor = Sensor { value_kind: ValueKind::Depth { metres }, ..METRES };
                 let (found, per_unit) = counts_of(&floats, sensor).unwrap();
                 assert_eq!(found, counts);
                 assert!((per_unit / (per_metre * metres) - 1.0).abs() < 1e-12, "{per_unit} a unit");
@@ -215,10 +217,10 @@ mod tests {
     fn whole_numbers_and_what_is_no_depth_are_not_counted() {
         let counts = counts(4, 9000);
         let floats: Vec<f32> = counts.iter().map(|&count| f32::from(count)).collect();
-        let millimetres = Sensor { measure: Measure::Depth { metres: 0.001 }, ..METRES };
+        let millimetres = Sensor { value_kind: ValueKind::Depth { metres: 0.001 }, ..METRES };
         assert!(counts_of(&floats, millimetres).is_some());
         assert_eq!(counts_of(&counts, millimetres), None);
-        assert_eq!(counts_of(&floats, Sensor { measure: Measure::Disparity, ..METRES }), None);
+        assert_eq!(counts_of(&floats, Sensor { value_kind: ValueKind::Disparity, ..METRES }), None);
     }
 
     #[test]

@@ -13,7 +13,7 @@ use crate::explanation::{Explanation, Limit, Verdict};
 use crate::map::AnyView;
 use crate::map::with_view;
 use crate::methods::method::{Job, MethodInfo};
-use crate::methods::tries::{Change, Tries, rounded_down, rounded_up, smaller_min};
+use crate::methods::tries::{Change, Tries, lower_min_pixels, rounded_down, rounded_up};
 use crate::noise::{NoiseModel, Space};
 
 /// Factors by which the noise or the inlier threshold may be raised for a suggestion; with more, anything is a plane.
@@ -73,13 +73,15 @@ fn verdict(trace: &Trace, run: &Runner, out: &Detection) -> Verdict {
         return Verdict::NotMeasured;
     }
     if trace.assigned > 0 {
-        return Verdict::Small { pixels: trace.piece, min: run.params.min, early: false };
+        return Verdict::Small { pixels: trace.piece, min_pixels: run.params.min_pixels, early: false };
     }
     if trace.is_on_curved {
         return Verdict::Curved;
     }
     match (trace.fate, nearest) {
-        (Fate::Small(pixels), _) => Verdict::Small { pixels: pixels as usize, min: run.params.min, early: true },
+        (Fate::Small(pixels), _) => {
+            Verdict::Small { pixels: pixels as usize, min_pixels: run.params.min_pixels, early: true }
+        }
         (Fate::Curved, _) => Verdict::Curved,
         (Fate::EdgeOn, _) => Verdict::EdgeOn,
         (Fate::None, _) if pixels < least => Verdict::Sparse { pixels: pixels as usize, least: least as usize },
@@ -101,14 +103,14 @@ fn changes(trace: &Trace, verdict: &Verdict, run: &Runner) -> Vec<Vec<Change>> {
     let inlier_threshold = run.params.inlier_threshold;
     let nothing = Vec::new;
     match *verdict {
-        Verdict::Small { pixels, .. } => vec![smaller_min(pixels).collect()],
+        Verdict::Small { pixels, .. } => vec![lower_min_pixels(pixels).collect()],
         Verdict::Off { off, most, .. } => {
             let times = off / most;
             vec![inlier_thresholds(times * inlier_threshold), noises(trace, run, times)]
         }
         Verdict::Uneven { .. } | Verdict::Alone | Verdict::Sparse { .. } => {
             vec![
-                smaller_min(run.params.min as usize / 2).take(3).collect(),
+                lower_min_pixels(run.params.min_pixels as usize / 2).take(3).collect(),
                 inlier_thresholds(inlier_threshold),
                 noises(trace, run, 1.2),
             ]
@@ -141,7 +143,7 @@ fn noises(trace: &Trace, run: &Runner, least: f64) -> Vec<Change> {
     let here = noise.variance(trace.q).sqrt() / run.params.noise_scale;
     let most = FACTORS[FACTORS.len() - 1];
     let factors = FACTORS.into_iter().map(|factor| 1.01 * factor * least).filter(|&factor| factor <= most);
-    let scaled = |factor: f64| match Space::of(trace.sensor.measure) {
+    let scaled = |factor: f64| match Space::of(trace.sensor.value_kind) {
         Space::Value => vec![("noise", rounded_up(factor * here))],
         Space::InverseDepth { .. } => {
             let (z, sigma_m) = (trace.q.recip(), here / (trace.q * trace.q));
@@ -166,7 +168,7 @@ mod tests {
     use super::super::testing::{Made, SENSOR, SIGMA, Stages, noise};
     use super::super::trace::Against;
     use super::*;
-    use crate::camera::Measure;
+    use crate::camera::ValueKind;
     use crate::noise::SensorNoise;
     use crate::sensor::Sensor;
 
@@ -197,10 +199,10 @@ mod tests {
     fn the_verdict_is_the_first_reason_that_the_stages_had() {
         let stages = run();
         let run = &stages.run;
-        let min = run.params.min;
+        let min_pixels = run.params.min_pixels;
         let fated = |fate: Fate| verdict(&Trace { fate, ..trace() }, run, &out());
         assert_eq!(verdict(&Trace { q: f64::NAN, fate: Fate::Curved, ..trace() }, run, &out()), Verdict::NotMeasured);
-        assert_eq!(fated(Fate::Small(30.0)), Verdict::Small { pixels: 30, min, early: true });
+        assert_eq!(fated(Fate::Small(30.0)), Verdict::Small { pixels: 30, min_pixels, early: true });
         assert_eq!((fated(Fate::Curved), fated(Fate::EdgeOn)), (Verdict::Curved, Verdict::EdgeOn));
         assert_eq!(fated(Fate::None), Verdict::Alone);
         let seen = |tile: [f64; 2], against: Vec<Against>| verdict(&Trace { tile, against, ..trace() }, run, &out());
@@ -216,7 +218,7 @@ mod tests {
         }
         assert_eq!(seen([16.0, 3.0], against(5.0, true)), Verdict::Uneven { roughness: 3.0 });
         let piece = Trace { assigned: 1, piece: 12, ..trace() };
-        assert_eq!(verdict(&piece, run, &out()), Verdict::Small { pixels: 12, min, early: false });
+        assert_eq!(verdict(&piece, run, &out()), Verdict::Small { pixels: 12, min_pixels, early: false });
         // A pixel that has a plane has it whatever else was seen.
         let mut found = out();
         found.labels[5 * 16 + 3] = 1;
@@ -255,9 +257,9 @@ mod tests {
         }
         assert_eq!(noises(&Trace { noise: None, ..trace() }, &stages.run, 1.0), [] as [Change; 0]);
         // Depth: at 2 m the base and the growth together are so many times what they were.
-        let measure = Measure::Depth { metres: 0.001 };
-        let model = NoiseModel::new(measure, SensorNoise::Depth { base: 0.002, growth: 0.0015 }, 0.0).unwrap();
-        let seen = Trace { q: 0.5, noise: Some(model), sensor: Sensor { measure, ..SENSOR }, ..trace() };
+        let value_kind = ValueKind::Depth { metres: 0.001 };
+        let model = NoiseModel::new(value_kind, SensorNoise::Depth { base: 0.002, growth: 0.0015 }, 0.0).unwrap();
+        let seen = Trace { q: 0.5, noise: Some(model), sensor: Sensor { value_kind, ..SENSOR }, ..trace() };
         let changes = noises(&seen, &stages.run, 2.0);
         let [base, growth] = ["noise", "noise-growth"].map(|name| value(&changes, name)[0]);
         let (before, after) = (0.002 + 0.0015 * 4.0, base + growth * 4.0);
@@ -273,9 +275,9 @@ mod tests {
             let changes = changes(&seen, &verdict, &stages.run);
             changes.iter().map(|changes| changes[0][0].0).collect::<Vec<_>>()
         };
-        assert_eq!(names(Verdict::Small { pixels: 50, min: 100, early: false }), ["min"]);
+        assert_eq!(names(Verdict::Small { pixels: 50, min_pixels: 100, early: false }), ["min-pixels"]);
         assert_eq!(names(Verdict::Off { off: 6.0, most: 4.0, label: 1 }), ["inlier-threshold", "noise"]);
-        assert_eq!(names(Verdict::Uneven { roughness: 2.0 }), ["min", "inlier-threshold", "noise"]);
+        assert_eq!(names(Verdict::Uneven { roughness: 2.0 }), ["min-pixels", "inlier-threshold", "noise"]);
         let dropped = Verdict::Dropped { parameter: "min-area", value: 0.5, limit: Limit::AtLeast(1.0) };
         assert_eq!(changes(&seen, &dropped, &stages.run), [[vec![("min-area", 0.49)], vec![("min-area", 0.0)]]]);
         assert_eq!(names(Verdict::NotMeasured), [""; 0]);

@@ -115,7 +115,7 @@ impl Merger {
             found if found >= MAX_PLANES =>
             // one label more is taken, [`super::region::CURVED_LABEL`]
             {
-                Err(Error::TooManyPlanes { found, raise: "`min`".to_string() })
+                Err(Error::TooManyPlanes { found, raise: "`min-pixels`".to_string() })
             }
             _ => Ok(()),
         }

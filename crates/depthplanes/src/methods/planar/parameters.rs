@@ -1,7 +1,7 @@
 //! The parameters of `planar`, and what they say of the noise.
 
 use super::region::{Planes, Region};
-use crate::methods::extraction::MIN;
+use crate::methods::extraction::MIN_PIXELS;
 use crate::methods::noise::{NOISE, NOISE_GROWTH, NOISE_SCALE, SMOOTH_NOISE, SMOOTH_NOISE_GROWTH, stated};
 use crate::methods::parameter::{Param, ParamKind, defaults, setters};
 use crate::noise::errors::Errors;
@@ -10,9 +10,10 @@ use crate::noise::{NoiseModel, Rounding, SensorNoise, Space};
 use crate::sensor::Sensor;
 
 pub(super) const PARAMS: &[Param] = &[
-    MIN,
+    MIN_PIXELS,
     Param {
         name: "min-area",
+        alias: None,
         default: 0.0,
         min: 0.0,
         max: f64::MAX,
@@ -28,6 +29,7 @@ pub(super) const PARAMS: &[Param] = &[
     NOISE_SCALE,
     Param {
         name: "lateral-noise",
+        alias: None,
         default: 0.0,
         min: 0.0,
         max: 100.0,
@@ -38,6 +40,7 @@ pub(super) const PARAMS: &[Param] = &[
     },
     Param {
         name: "inlier-threshold",
+        alias: None,
         default: 4.0,
         min: 0.5,
         max: 100.0,
@@ -52,7 +55,7 @@ pub(super) const PARAMS: &[Param] = &[
 ///
 /// ```
 /// use depthplanes::{Detector, Planar};
-/// let detector = Detector::new(Planar::default().min(500).inlier_threshold(3.0))?;
+/// let detector = Detector::new(Planar::default().min_pixels(500).inlier_threshold(3.0))?;
 /// # Ok::<(), depthplanes::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,7 +64,8 @@ pub(super) const PARAMS: &[Param] = &[
 #[non_exhaustive]
 pub struct Planar {
     /// A plane has strictly more pixels than this.
-    pub min: u32,
+    #[cfg_attr(feature = "serde", serde(alias = "min"))]
+    pub min_pixels: u32,
     /// A plane has at least this area ([`crate::detection::MetricPlane::area_m2`]), square metres; 0 for off.
     pub min_area: f64,
     /// Standard deviation of a pixel by itself: of depth at range 0, metres; of disparity, map units. If this and
@@ -91,7 +95,7 @@ impl Planar {
     pub(super) fn from_values(values: &[f64]) -> Self {
         assert_eq!(values.len(), PARAMS.len(), "one value for each row of PARAMS");
         Planar {
-            min: values[0] as u32,
+            min_pixels: values[0] as u32,
             min_area: values[1],
             noise: values[2],
             noise_growth: values[3],
@@ -106,17 +110,27 @@ impl Planar {
     pub(super) fn values(&self) -> [f64; 9] {
         let noise = [self.noise, self.noise_growth, self.smooth_noise, self.smooth_noise_growth];
         let [white, white_growth, smooth, smooth_growth] = noise;
-        let Planar { min, min_area, noise_scale, lateral_noise, inlier_threshold, .. } = *self;
-        [min.into(), min_area, white, white_growth, smooth, smooth_growth, noise_scale, lateral_noise, inlier_threshold]
+        let Planar { min_pixels, min_area, noise_scale, lateral_noise, inlier_threshold, .. } = *self;
+        [
+            min_pixels.into(),
+            min_area,
+            white,
+            white_growth,
+            smooth,
+            smooth_growth,
+            noise_scale,
+            lateral_noise,
+            inlier_threshold,
+        ]
     }
 
     /// The noise to expect: each part as the parameters state it, or else as the sensor's, or else as a map shows it whose
     /// values are rounded so.
     pub(super) fn expected(&self, sensor: &Sensor, shown: &Errors, rounding: Rounding) -> NoiseModel {
-        let (space, scale) = (Space::of(sensor.measure), self.noise_scale);
+        let (space, scale) = (Space::of(sensor.value_kind), self.noise_scale);
         // What is stated for another kind of map counts as not stated.
         let model = |noise: SensorNoise| {
-            Some(NoiseModel::new(sensor.measure, noise.times(scale), 0.0)?.with_rounding(rounding))
+            Some(NoiseModel::new(sensor.value_kind, noise.times(scale), 0.0)?.with_rounding(rounding))
         };
         let estimated = |factor: f64| shown.times(factor, space);
         let white =
@@ -138,13 +152,13 @@ impl Planar {
 
     /// The smooth part as the parameters state it, or else as the sensor's, if it is of the map's kind.
     pub(super) fn stated_smooth(&self, sensor: &Sensor) -> Option<SensorNoise> {
-        let stated = stated(Space::of(sensor.measure), self.smooth_noise, self.smooth_noise_growth);
-        stated.or(sensor.smooth_noise).filter(|&noise| NoiseModel::new(sensor.measure, noise, 0.0).is_some())
+        let stated = stated(Space::of(sensor.value_kind), self.smooth_noise, self.smooth_noise_growth);
+        stated.or(sensor.smooth_noise).filter(|&noise| NoiseModel::new(sensor.value_kind, noise, 0.0).is_some())
     }
 
     /// Fewest pixels of a region of tiles: a plane has many of its pixels in tiles that it shares with others.
     pub(super) fn least(&self) -> f64 {
-        f64::from(self.min) * 0.5
+        f64::from(self.min_pixels) * 0.5
     }
 
     /// What pixels are held against.
@@ -160,6 +174,6 @@ impl Default for Planar {
 }
 
 setters!(
-    Planar: min: u32, min_area: f64, noise: f64, noise_growth: f64, smooth_noise: f64, smooth_noise_growth: f64,
+    Planar: min_pixels: u32, min_area: f64, noise: f64, noise_growth: f64, smooth_noise: f64, smooth_noise_growth: f64,
     noise_scale: f64, lateral_noise: f64, inlier_threshold: f64,
 );

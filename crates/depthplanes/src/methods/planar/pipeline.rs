@@ -13,7 +13,7 @@ use super::redundant::Redundancy;
 use super::refine::Refiner;
 use super::region::{Region, find_boxes, of_image};
 use super::thresholds::SHOWN_MOST;
-use crate::camera::Measure;
+use crate::camera::ValueKind;
 use crate::components::ConnectedComponents;
 use crate::components::boundary::Boundary;
 use crate::components::gaps::{Bridge, Measured};
@@ -107,7 +107,7 @@ impl Runner {
         self.find_redundant(&noise, threads);
         self.mark_curved(Sensing { noise: &noise, rays }, threads);
         observe(Checkpoint::Judged, self, &noise);
-        self.drop_what_is_no_plane(job.sensor.measure, threads);
+        self.drop_what_is_no_plane(job.sensor.value_kind, threads);
         job.done("judge");
 
         self.assign(&noise, false, threads);
@@ -130,13 +130,13 @@ impl Runner {
     /// Tiles: the map in the space where planes are affine, and the sums of its cells.
     fn sum_tiles<T: Pixel>(&mut self, map: &DepthView<'_, T>, job: &Job<'_>) {
         self.affine.prepare(map);
-        self.pyramid.sum(map, Space::of(job.sensor.measure), job.threads, &mut self.affine);
+        self.pyramid.sum(map, Space::of(job.sensor.value_kind), job.threads, &mut self.affine);
     }
 
     /// The noise to expect: stated, or as the cells show it; and how many times its smooth part the cells show with the
     /// longer waves.
     fn estimate_noise<T: Pixel>(&mut self, map: &DepthView<'_, T>, job: &Job<'_>) -> (NoiseModel, f64) {
-        let space = Space::of(job.sensor.measure);
+        let space = Space::of(job.sensor.value_kind);
         let rounding = if is_on("rounding") { self.rounding.find(map, space) } else { Rounding::NONE };
         self.pyramid.show(&mut self.scales);
         let errors = self.scales.errors(space, &rounding).unwrap_or(Errors::NONE);
@@ -217,10 +217,10 @@ impl Runner {
     }
 
     /// Leaves out regions that larger ones explain, and those that are seen edge-on.
-    fn drop_what_is_no_plane(&mut self, measure: Measure, threads: usize) {
+    fn drop_what_is_no_plane(&mut self, value_kind: ValueKind, threads: usize) {
         let Runner { pyramid, regions, merger, redundancy, .. } = self;
         let mut redundant = redundancy.is_redundant.iter();
-        let goes = |region: &Region| redundant.next() == Some(&true) || region.is_edge_on(measure);
+        let goes = |region: &Region| redundant.next() == Some(&true) || region.is_edge_on(value_kind);
         merger.drop(&mut pyramid.grids[0], regions, threads, goes);
     }
 
@@ -263,7 +263,7 @@ impl Runner {
         let Runner { params, affine, image, extraction, bridge, .. } = self;
         let ids = of_image(image, affine)?;
         let wanted = Wanted {
-            min: params.min,
+            min_pixels: params.min_pixels,
             min_area: params.min_area,
             noise: Some(noise),
             valid_pixels: affine.valid_pixels,
@@ -299,7 +299,7 @@ impl Runner {
         for (ids, labels) in image.chunks_exact_mut(affine.stride).zip(planes.chunks_exact(map.width())) {
             ids.iter_mut().zip(labels).filter(|(_, label)| **label > 0).for_each(|(id, _)| *id = 0);
         }
-        extraction.extract_curved(map, &of_image(image, affine)?, params.min, |_| (), job, old)
+        extraction.extract_curved(map, &of_image(image, affine)?, params.min_pixels, |_| (), job, old)
     }
 
     /// The label that most of a region's pixels have, 0 for none.

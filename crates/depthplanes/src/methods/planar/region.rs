@@ -3,7 +3,7 @@
 use super::grid::{Cell, Grid};
 use super::layout::AffineMap;
 use super::thresholds::EDGE_ON;
-use crate::camera::Measure;
+use crate::camera::ValueKind;
 use crate::error::Result;
 use crate::map::DepthView;
 use crate::methods::rays::{Rays, Vec3};
@@ -179,8 +179,8 @@ impl Region {
     }
 
     /// Whether it is seen too much edge-on for a plane.
-    pub(super) fn is_edge_on(&self, measure: Measure) -> bool {
-        is_on("edge-on") && self.steepness(Space::at_infinity(measure)) > EDGE_ON
+    pub(super) fn is_edge_on(&self, value_kind: ValueKind) -> bool {
+        is_on("edge-on") && self.steepness(Space::at_infinity(value_kind)) > EDGE_ON
     }
 }
 
@@ -388,10 +388,12 @@ mod tests {
             let stages = Stages::tiles(&made, noise(0.0));
             Region::of(&stages.run.pyramid.grids[2].cell(Place::new(0, 0)))
         };
-        let rig = Measure::InverseDepth { slope: 0.01, offset: -0.3 }; // 30 is infinitely far
-        for (measure, infinity) in [(Measure::Disparity, 0.0), (Measure::Depth { metres: 1.0 }, 0.0), (rig, 30.0)] {
-            assert!(at(0.26, 40.0, infinity).is_edge_on(measure), "{measure:?}");
-            assert!(!at(0.24, 40.0, infinity).is_edge_on(measure), "{measure:?}");
+        let rig = ValueKind::InverseDepth { slope: 0.01, offset: -0.3 }; // 30 is infinitely far
+        for (value_kind, infinity) in
+            [(ValueKind::Disparity, 0.0), (ValueKind::Depth { metres: 1.0 }, 0.0), (rig, 30.0)]
+        {
+            assert!(at(0.26, 40.0, infinity).is_edge_on(value_kind), "{value_kind:?}");
+            assert!(!at(0.24, 40.0, infinity).is_edge_on(value_kind), "{value_kind:?}");
         }
     }
 

@@ -4,7 +4,7 @@
 //! the source: one value a pixel, seen by a camera of as many pixels. Of a map that was measured at few of its pixels
 //! ([`SparseFinder`]) they see one measured pixel of each bin, again by a camera of as many pixels. What was found is
 //! painted on the whole map: the label of its source pixel for each that was repeated, the nearest of the planes
-//! around its bin for each that was measured. There it is grouped, selected and fitted, so that `min`, areas and places
+//! around its bin for each that was measured. There it is grouped, selected and fitted, so that `min-pixels`, areas and places
 //! are those of the map that was given. Repeated pixels say no more than one: errors of planes are those of the
 //! source's pixels.
 
@@ -27,7 +27,7 @@ use crate::noise::{Enlargement, EnlargementFinder, NoiseModel, Space};
 use crate::sensor::Sensor;
 use crate::util::memory::reserve_to;
 
-/// Fewest pixels of the source that are asked of a plane: those of a tile. `min` may be less than that.
+/// Fewest pixels of the source that are asked of a plane: those of a tile. `min-pixels` may be less than that.
 const TILE: u32 = 16;
 
 /// What the stages see instead of a map.
@@ -139,7 +139,7 @@ impl Source {
     ) -> Result<()> {
         let Source { finder, pixels, found, image, spreader, extraction, pieces } = self;
         let Some(reduced) = finder.find(map) else { return runner.planar(*map, job, out, &mut |_, _, _| ()) };
-        let Planar { min, min_area, inlier_threshold, .. } = runner.params;
+        let Planar { min_pixels, min_area, inlier_threshold, .. } = runner.params;
         if min_area > 0.0 {
             job.sensor.check_metric("min-area")?;
         }
@@ -152,13 +152,13 @@ impl Source {
         let noise = noise.map(|noise| of_whole(noise, &reduced, &runner.params));
         let labels = match (&reduced, &noise) {
             (Reduced::Sparse(sparse), Some(noise)) => {
-                let space = Space::of(job.sensor.measure);
+                let space = Space::of(job.sensor.value_kind);
                 spreader.spread(map, space, sparse, &found.labels, noise, inlier_threshold, image);
                 DepthView::new(&image[..], map.width(), map.height())?.valid_range(1, u16::MAX)?
             }
             _ => paint(&found.labels, &reduced, map, image)?,
         };
-        let wanted = Wanted { min, min_area, noise: noise.as_ref(), valid_pixels: map.valid_pixels() };
+        let wanted = Wanted { min_pixels, min_area, noise: noise.as_ref(), valid_pixels: map.valid_pixels() };
         extraction.extract_united(map, &labels, &wanted, |components| pieces.join(&labels, components), job, out)?;
         if let Reduced::Repeated(enlargement) = &reduced {
             errors_of_source(found, labels, enlargement, out);
@@ -169,7 +169,7 @@ impl Source {
             image.iter_mut().zip(&out.labels).filter(|(_, label)| **label > 0).for_each(|(curved, _)| *curved = 0);
             let labels = DepthView::new(&image[..], map.width(), map.height())?.valid_range(1, u16::MAX)?;
             let unite = |components: &mut ConnectedComponents| pieces.join(&labels, components);
-            out.curved = Some(extraction.extract_curved(map, &labels, min, unite, job, old)?);
+            out.curved = Some(extraction.extract_curved(map, &labels, min_pixels, unite, job, old)?);
             job.done("label");
         }
         Ok(())
@@ -199,7 +199,7 @@ impl Source {
         let mut out = Detection::default();
         self.run(runner, map, job, &mut out)?;
         explanation.findings.insert(0, finding);
-        explanation.verdict = self.verdict(explanation.verdict, runner.params.min, factor, &out, at);
+        explanation.verdict = self.verdict(explanation.verdict, runner.params.min_pixels, factor, &out, at);
         let values = runner.params.values();
         let planes = out.planes.len();
         let tries = Tries { info, values: &values, map: (*map).into(), sensor: job.sensor, at, planes };
@@ -209,7 +209,14 @@ impl Source {
     }
 
     /// The verdict on a source pixel as one on pixels of the whole map.
-    fn verdict(&self, of_source: Verdict, min: u32, [x, y]: [f64; 2], out: &Detection, at: [usize; 2]) -> Verdict {
+    fn verdict(
+        &self,
+        of_source: Verdict,
+        min_pixels: u32,
+        [x, y]: [f64; 2],
+        out: &Detection,
+        at: [usize; 2],
+    ) -> Verdict {
         let whole = |pixels: usize| (pixels as f64 * x * y).round() as usize;
         let label = out.labels[at[1] * out.width + at[0]];
         match of_source {
@@ -217,8 +224,8 @@ impl Source {
                 let off = if let Verdict::Plane { off, .. } = of_source { off } else { None };
                 Verdict::Plane { label, pixels: out.planes[usize::from(label) - 1].pixel_count, off }
             }
-            Verdict::Plane { pixels, .. } => Verdict::Small { pixels: whole(pixels), min, early: false },
-            Verdict::Small { pixels, early, .. } => Verdict::Small { pixels: whole(pixels), min, early },
+            Verdict::Plane { pixels, .. } => Verdict::Small { pixels: whole(pixels), min_pixels, early: false },
+            Verdict::Small { pixels, early, .. } => Verdict::Small { pixels: whole(pixels), min_pixels, early },
             Verdict::Off { off, most, label } => Verdict::Off { off, most, label: self.label_of(label, out) },
             other => other,
         }
@@ -234,7 +241,7 @@ impl Source {
 /// The suggestions for a source pixel that work on the whole map too.
 fn retried(suggestions: Vec<Suggestion>, tries: &Tries<'_>, [x, y]: [f64; 2]) -> Vec<Suggestion> {
     let of_whole = |(name, value): (&'static str, f64)| match name {
-        "min" => (name, (value * x.floor() * y.floor()).floor()),
+        "min-pixels" => (name, (value * x.floor() * y.floor()).floor()),
         _ => (name, value),
     };
     let changes = suggestions.into_iter().map(|suggestion| suggestion.parameters.into_iter().map(of_whole).collect());
@@ -251,10 +258,10 @@ fn with_source<R>(
 ) -> Result<R> {
     let ([x, y], [u, v]) = (reduced.factor(), reduced.centre());
     let params = runner.params;
-    // A plane of more than `min` pixels has more than this of the source, whatever the blocks.
-    let min = params.min / (x.ceil() * y.ceil()) as u32;
+    // A plane of more than `min-pixels` pixels has more than this of the source, whatever the blocks.
+    let min_pixels = params.min_pixels / (x.ceil() * y.ceil()) as u32;
     let lateral_noise = (params.lateral_noise / (x * y).sqrt()).hypot(reduced.jitter());
-    runner.params = Planar { min: min.max(params.min.min(TILE)), lateral_noise, ..params };
+    runner.params = Planar { min_pixels: min_pixels.max(params.min_pixels.min(TILE)), lateral_noise, ..params };
     let camera =
         |Intrinsics { fx, fy, cx, cy }| Intrinsics { fx: fx / x, fy: fy / y, cx: (cx - u) / x, cy: (cy - v) / y };
     let sensor = Sensor { intrinsics: job.sensor.intrinsics.map(camera), ..job.sensor };
@@ -403,7 +410,7 @@ fn widen(covariance: &mut [[f64; 4]; 4], times: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::Measure;
+    use crate::camera::ValueKind;
     use crate::components::Connectivity;
     use crate::util::random::Random;
 
@@ -448,15 +455,15 @@ mod tests {
     #[test]
     fn the_stages_see_the_camera_of_the_source_and_parameters_for_its_pixels_and_neither_stays() {
         let camera = Intrinsics { fx: 500.0, fy: 480.0, cx: 319.5, cy: 200.0 };
-        let sensor = Sensor { measure: Measure::Disparity, intrinsics: Some(camera), ..Sensor::default() };
+        let sensor = Sensor { value_kind: ValueKind::Disparity, intrinsics: Some(camera), ..Sensor::default() };
         let enlargement = Enlargement { columns: &[0], rows: &[0], factor: [2.0, 3.0] };
-        let params = Planar { min: 600, lateral_noise: 0.6, ..Planar::default() };
+        let params = Planar { min_pixels: 600, lateral_noise: 0.6, ..Planar::default() };
         let mut runner = Runner { params, ..Runner::default() };
         let mut told = Vec::new();
         let mut observer = |stage| told.push(stage);
         let mut job = Job { sensor, threads: 1, curved: true, joiner: None, observer: &mut observer };
         with_source(&mut runner, &mut job, &Reduced::Repeated(enlargement), |runner, job| {
-            assert_eq!((runner.params.min, job.curved), (100, true));
+            assert_eq!((runner.params.min_pixels, job.curved), (100, true));
             assert!((runner.params.lateral_noise - 0.6 / 6.0f64.sqrt()).abs() < 1e-12);
             let source = job.sensor.intrinsics.unwrap();
             // The middle of a source pixel is the middle of its block.
@@ -473,11 +480,11 @@ mod tests {
         // Stages of the whole map are told by the whole map alone.
         assert_eq!(told, ["tiles", "grow"]);
         // A plane of the source has a tile, unless fewer pixels are asked for.
-        for (min, expected) in [(30, TILE), (10, 10), (0, 0)] {
-            let mut runner = Runner { params: Planar { min, ..params }, ..Runner::default() };
+        for (min_pixels, expected) in [(30, TILE), (10, 10), (0, 0)] {
+            let mut runner = Runner { params: Planar { min_pixels, ..params }, ..Runner::default() };
             let mut job = Job { sensor, threads: 1, curved: false, joiner: None, observer: &mut |_| () };
             with_source(&mut runner, &mut job, &Reduced::Repeated(enlargement), |runner, _| {
-                assert_eq!(runner.params.min, expected);
+                assert_eq!(runner.params.min_pixels, expected);
                 Ok(())
             })
             .unwrap();

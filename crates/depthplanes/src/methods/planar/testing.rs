@@ -6,7 +6,7 @@ use super::grid::{Cell, Grid, NONE};
 use super::layout::SIDE;
 use super::pipeline::Runner;
 use super::region::{Planes, Region, find_boxes};
-use crate::camera::Measure;
+use crate::camera::ValueKind;
 use crate::map::DepthView;
 use crate::methods::rays::Rays;
 use crate::noise::{NoiseModel, SensorNoise, Space};
@@ -22,7 +22,7 @@ pub(super) const THRESHOLD: f64 = 4.0;
 
 /// What the synthetic maps are taken with.
 pub(super) const SENSOR: Sensor =
-    Sensor { measure: Measure::Disparity, intrinsics: None, distortion: None, noise: None, smooth_noise: None };
+    Sensor { value_kind: ValueKind::Disparity, intrinsics: None, distortion: None, noise: None, smooth_noise: None };
 
 /// A synthetic map: disparity, so that q is the value.
 #[derive(Clone, Debug)]
@@ -73,7 +73,7 @@ impl Made {
 
 /// White noise of [`SIGMA`], and a smooth part of that deviation.
 pub(super) fn noise(smooth: f64) -> NoiseModel {
-    let white = NoiseModel::new(Measure::Disparity, SensorNoise::Value { sigma: SIGMA }, 0.0).unwrap();
+    let white = NoiseModel::new(ValueKind::Disparity, SensorNoise::Value { sigma: SIGMA }, 0.0).unwrap();
     white.with_smooth(SensorNoise::Value { sigma: smooth }, 0.0)
 }
 

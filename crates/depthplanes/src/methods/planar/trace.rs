@@ -10,7 +10,7 @@ use super::grow::fewest;
 use super::pipeline::{Checkpoint, Runner};
 use super::region::{CURVED_LABEL, Region};
 use super::thresholds::EDGE_ON;
-use crate::camera::{Hessian, Measure};
+use crate::camera::{HessianNormalForm, ValueKind};
 use crate::detection::Detection;
 use crate::explanation::{Finding, Limit};
 use crate::methods::noise::stated;
@@ -118,12 +118,12 @@ impl Trace {
         if self.q.is_nan() {
             return finding;
         }
-        let finding = match self.sensor.measure.depth_m(value) {
+        let finding = match self.sensor.value_kind.depth_m(value) {
             Some(depth) => finding.with("depth", depth, "m"),
             None => finding,
         };
-        match self.sensor.measure {
-            Measure::Depth { .. } => finding.with("inverse depth", self.q, "1/m"),
+        match self.sensor.value_kind {
+            ValueKind::Depth { .. } => finding.with("inverse depth", self.q, "1/m"),
             _ => finding,
         }
     }
@@ -158,7 +158,7 @@ impl Trace {
 
     fn describe_noise(&mut self, run: &Runner) {
         let Some(noise) = self.noise.filter(|_| self.q.is_finite()) else { return };
-        let space = Space::of(self.sensor.measure);
+        let space = Space::of(self.sensor.value_kind);
         let source = self.source(stated(space, run.params.noise, run.params.noise_growth), self.sensor.noise);
         let sigma = noise.variance(self.q).sqrt();
         let finding = Finding::new("tiles", "noise expected of the pixel", source);
@@ -178,7 +178,7 @@ impl Trace {
     }
 
     fn describe_smooth(&mut self, run: &Runner, noise: NoiseModel) {
-        let space = Space::of(self.sensor.measure);
+        let space = Space::of(self.sensor.value_kind);
         let stated = stated(space, run.params.smooth_noise, run.params.smooth_noise_growth);
         let source = self.source(stated, self.sensor.smooth_noise);
         let finding = Finding::new("tiles", "the part that its neighbours share", source);
@@ -205,7 +205,7 @@ impl Trace {
 
     fn with_smooth(&self, finding: Finding, noise: &NoiseModel) -> Finding {
         let sigma = noise.smooth_sigma(self.q);
-        match Space::of(self.sensor.measure) {
+        match Space::of(self.sensor.value_kind) {
             Space::InverseDepth { .. } => finding.with("of depth", 1e3 * sigma / (self.q * self.q), "mm"),
             Space::Value => finding.with("of the value", sigma, "map units"),
         }
@@ -215,7 +215,7 @@ impl Trace {
     fn source(&self, stated: Option<SensorNoise>, of_sensor: Option<SensorNoise>) -> &'static str {
         match (stated, of_sensor) {
             (Some(_), _) => "from the parameters",
-            (None, Some(noise)) if NoiseModel::new(self.sensor.measure, noise, 0.0).is_some() => {
+            (None, Some(noise)) if NoiseModel::new(self.sensor.value_kind, noise, 0.0).is_some() => {
                 "the sensor's, from its preset or table"
             }
             _ => "estimated from the map",
@@ -254,12 +254,12 @@ impl Trace {
     fn with_plane(&self, finding: Finding, region: &Region) -> Finding {
         let [a, b, _] = region.abc;
         let c = region.at(0.0, 0.0);
-        let abc = match self.sensor.measure {
-            Measure::Depth { .. } => [a, b, c],
-            Measure::InverseDepth { slope, offset } => [slope * a, slope * b, slope * c + offset],
-            Measure::Disparity => return finding,
+        let abc = match self.sensor.value_kind {
+            ValueKind::Depth { .. } => [a, b, c],
+            ValueKind::InverseDepth { slope, offset } => [slope * a, slope * b, slope * c + offset],
+            ValueKind::Disparity => return finding,
         };
-        match self.sensor.intrinsics.and_then(|camera| Hessian::from_inverse_depth(abc, &camera)) {
+        match self.sensor.intrinsics.and_then(|camera| HessianNormalForm::from_inverse_depth(abc, &camera)) {
             Some(plane) => {
                 let [x, y, z] = plane.normal;
                 finding
@@ -309,11 +309,11 @@ impl Trace {
             self.findings.push(finding.refusing(is_redundant));
         }
         let region = &run.regions.all[id as usize];
-        let is_edge_on = region.is_edge_on(self.sensor.measure);
+        let is_edge_on = region.is_edge_on(self.sensor.value_kind);
         if is_edge_on {
             let finding = Finding::new("judge", "is it seen edge-on?", "dropped, it runs away from the camera");
             let finding = finding
-                .with("change over a pixel", region.steepness(Space::at_infinity(self.sensor.measure)), "")
+                .with("change over a pixel", region.steepness(Space::at_infinity(self.sensor.value_kind)), "")
                 .limit(Limit::AtMost(EDGE_ON));
             self.findings.push(finding.refusing(true));
         }
@@ -376,9 +376,9 @@ impl Trace {
     fn conclude_piece(&mut self, run: &Runner) {
         let groups = run.extraction.components.groups();
         self.piece = groups.sizes()[groups.at(self.at) as usize] as usize;
-        self.is_large = self.piece > run.params.min as usize;
+        self.is_large = self.piece > run.params.min_pixels as usize;
         let outcome = if self.is_large { "large enough" } else { "too small" };
-        let limit = Limit::MoreThan(run.params.min.into());
+        let limit = Limit::MoreThan(run.params.min_pixels.into());
         let finding = Finding::new("group", "its connected piece", outcome).with("pixels", self.piece as f64, "");
         self.findings.push(finding.limit(limit).refusing(!self.is_large));
     }
