@@ -153,6 +153,7 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
             preset: preset.map(|preset| preset.name),
             scale,
             stereo: stereo.filter(|_| encoding.disparity),
+            disparity,
             noise: source(options.noise, preset.and_then(|preset| preset.noise)),
             smooth_noise: source(options.smooth_noise, preset.and_then(|preset| preset.smooth_noise)),
             ray_distance: options.ray_distance,

@@ -13,6 +13,9 @@ pub(super) fn lines(name: &str, frame: &Frame, seen: &Summary, given: &Reading) 
     if seen.range.is_none() {
         return Vec::new();
     }
+    if seen.warnings.iter().any(|warning| warning.contains("is this a label image")) {
+        return vec!["nothing, if it is one: the regions are in it; `depthplanes score` compares label images".into()];
+    }
     let (words, encoding) = flags(frame, seen, given);
     let words: Vec<String> = [name.to_string()].into_iter().chain(words).map(|word| quoted(&word)).collect();
     let mut lines = vec![format!("depthplanes detect {}", plain(&words.join(" ")))];
