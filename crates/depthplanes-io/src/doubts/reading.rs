@@ -45,8 +45,13 @@ impl Score {
 /// A reading under which far more pixels lie on planes.
 pub(super) fn better(report: &Report<'_>) -> Option<String> {
     let (frame, as_read) = (report.frame, Score::of(report.detection));
-    let is_labels = frame.warnings.iter().any(|warning| warning.contains("label image"));
-    if is_labels || report.method.name != "planar" || as_read.share > SHARE || report.detection.valid_pixels < FEW {
+    let explained = ["label image", "try --swap-bytes", "try --preset kinect1-raw"];
+    let is_explained = |warning: &String| explained.iter().any(|words| warning.contains(words));
+    if frame.warnings.iter().any(is_explained)
+        || report.method.name != "planar"
+        || as_read.share > SHARE
+        || report.detection.valid_pixels < FEW
+    {
         return None;
     }
     let told = |reading: Score, advice: &str| {

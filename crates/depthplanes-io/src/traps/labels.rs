@@ -26,13 +26,13 @@ pub(super) fn labels(frame: &Frame, probe: &Probe) -> Option<String> {
     }
     let regions = with_view!(frame.view().ok()?, view => Regions::of(view))?;
     regions.are_labels().then(|| {
-        let values = match regions.levels.len() {
-            1 => format!("the one value {}", regions.levels[0]),
-            count => format!("only {count} different values"),
+        let or = match regions.levels[..] {
+            [only] => return format!("all valid pixels are {only}: is this a label image or a mask, not depth?"),
+            _ if is_open => "or disparity in few steps? state --disparity if it is",
+            _ => "not depth?",
         };
-        let or =
-            if is_depth && !is_open { "not depth?" } else { "or disparity in few steps? state --disparity if it is" };
-        format!("{values}, in regions of one value each: is this a label image or a mask, {or}")
+        let count = regions.levels.len();
+        format!("only {count} different values, in regions of one value each: is this a label image or a mask, {or}")
     })
 }
 
