@@ -209,7 +209,7 @@ fn checked(camera: &Intrinsics, map: Size, is_size_stated: bool, lens: Option<&D
     }
     let is_wide = lens.is_some_and(|lens| lens.model() == DistortionModel::KannalaBrandt);
     let notes = [
-        turned_axes(camera),
+        mirrored(camera),
         middle_elsewhere(camera, map, is_size_stated),
         odd_pixels(camera),
         odd_field(camera, map).filter(|_| !is_wide),
@@ -307,15 +307,11 @@ fn middle_elsewhere(camera: &Intrinsics, map: Size, is_size_stated: bool) -> Opt
     })
 }
 
-/// What a focal length below 0 means.
-fn turned_axes(&Intrinsics { fx, fy, .. }: &Intrinsics) -> Option<String> {
-    let axes = match (fx < 0.0, fy < 0.0) {
-        (false, false) => return None,
-        (true, false) => "fx is below 0, so x points to the left",
-        (false, true) => "fy is below 0, so y points up",
-        (true, true) => "fx and fy are below 0, so x points to the left and y up",
-    };
-    Some(format!("{axes}, in planes and points as well; state it above 0 for x to the right and y down"))
+/// A mirrored picture: unlike `fy` below 0, which means that y points up (ICL-NUIM), nobody's camera has it.
+fn mirrored(&Intrinsics { fx, .. }: &Intrinsics) -> Option<String> {
+    (fx < 0.0).then(|| {
+        format!("fx is {fx}, below 0: x points to the left, in planes and points as well; state it above 0 for x to the right")
+    })
 }
 
 /// Pixels that are far from square.

@@ -200,13 +200,13 @@ fn swapped_size(pixels: &Pixels, width: usize, height: usize) -> Option<String> 
         Pixels::F32(values) => f64::from(values[at]),
     };
     let area = width * height;
-    // How far apart values are that are so many samples apart: the median share.
+    // How far apart values are that are so many samples apart: the mean share, in which edges count for little. Over 40 recorded
+    // maps rows that do not go on in the ones below have 0.019 or more, 13 times what the rows of the map have.
     let apart = |step: usize| {
         let places = (0..area - step).step_by(area / 4096 + 1).map(|at| [value(at), value(at + step)]);
         let valid = places.filter(|pair| pair.iter().all(|value| *value > 0.0 && value.is_finite()));
-        let mut shares: Vec<f64> = valid.map(|[a, b]| (a - b).abs() / (a + b)).collect();
-        let middle = shares.len() / 2;
-        (shares.len() >= 64).then(|| *shares.select_nth_unstable_by(middle, f64::total_cmp).1)
+        let shares: Vec<f64> = valid.map(|[a, b]| ((a - b).abs() / (a + b)).min(0.1)).collect();
+        (shares.len() >= 64).then(|| shares.iter().sum::<f64>() / shares.len() as f64)
     };
     if width == height || width.min(height) < 8 {
         return None;
