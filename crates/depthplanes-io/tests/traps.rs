@@ -385,7 +385,7 @@ fn depths_beyond_the_presets_sensor_are_named() {
 
 #[test]
 fn depths_nearer_than_the_presets_sensor_sees_are_named() {
-    for of in ["kinect1", "kinect2", "structure", "7-scenes", "azure-kinect"] {
+    for of in ["kinect1", "kinect2", "structure", "7-scenes"] {
         let coarse = read(&counts(|_, depth| 62.0 * depth), &preset(of));
         noted(of, &coarse, &["the preset's sensor sees from", "--scale"]);
         assert_eq!(notes(&read(&counts(millimetres), &preset(of))), "", "{of}");

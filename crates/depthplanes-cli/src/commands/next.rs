@@ -95,6 +95,7 @@ fn quoted(word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::{proposed, quoted};
+    use crate::args::Reading;
 
     #[test]
     fn flags_are_taken_from_notes() {
