@@ -90,7 +90,7 @@ impl Regions {
 
     /// Whether they are those of a label image. Surfaces of few levels change by one level at a time; labels of neighbours have
     /// nothing to do with each other, so that of n levels all but two of n are further apart. On recorded label images at
-    /// least 0.9 of that share of the changes are jumps, on maps of depth and disparity at most 0.17, but for 0.65 where
+    /// least 0.75 of that share of the changes are jumps, on maps of depth and disparity at most 0.17, but for 0.65 where
     /// all surfaces face the camera.
     fn are_labels(&self) -> bool {
         let count = self.levels.len();
