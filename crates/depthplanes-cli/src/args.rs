@@ -9,6 +9,7 @@ mod flags;
 mod help;
 mod outputs;
 mod several;
+mod tips;
 
 use crate::failure::{Failure, exit_code};
 use crate::terminal::plain;
@@ -110,7 +111,8 @@ pub(crate) fn parse() -> Result<Command, ExitCode> {
 fn told(error: clap::Error, words: &[OsString]) -> ExitCode {
     // The message shows words, and these may be names of files: said of words that steer no terminal.
     let words: Vec<String> = words.iter().map(|word| plain(&word.to_string_lossy()).into_owned()).collect();
-    let error = program().try_get_matches_from(words).err().unwrap_or(error);
+    let error = program().try_get_matches_from(&words).err().unwrap_or(error);
+    let error = tips::with_tip(error, &words);
     let printed = error.print().and_then(|()| std::io::stdout().flush());
     match printed {
         // Wrong use is wrong use even where nobody can be told.

@@ -228,8 +228,8 @@ fn what_inspect_says_to_type_next_works() {
     let bench = Bench::with_map("type_next");
     let fives: Vec<u8> = (0..64 * 48u32).flat_map(|at| (5000 + 5 * (at % 64) as u16).to_be_bytes()).collect();
     bench.write("fives.pgm", &[b"P5 64 48 65535\n".to_vec(), fives].concat());
-    let size: Vec<u8> =
-        (0..640 * 480u32).flat_map(|at| (1500 + (at % 640 + 480 - at / 640) as u16).to_be_bytes()).collect();
+    let plane = |at: u32| (900_000 / (500 + (at % 640 + at / 640) / 5)) as u16;
+    let size: Vec<u8> = (0..640 * 480).flat_map(|at| plane(at).to_be_bytes()).collect();
     bench.write("vga.pgm", &[b"P5 640 480 65535\n".to_vec(), size].concat());
     bench
         .write("grey.pgm", &[b"P5 64 48 255\n".to_vec(), (0..64 * 48u32).map(|at| (at % 64) as u8).collect()].concat());

@@ -46,7 +46,7 @@ pub enum Error {
         bytes: u64,
     },
     /// An option's value, or a combination of options.
-    #[error("{option} is `{given}`; accepted: {accepted}")]
+    #[error("{option} is {}; accepted: {accepted}", quoted(given))]
     Parameter {
         /// The option's name.
         option: &'static str,
@@ -100,6 +100,12 @@ impl Error {
     pub fn parameter(option: &'static str, given: impl ToString, accepted: impl ToString) -> Error {
         Error::Parameter { option, given: given.to_string(), accepted: accepted.to_string() }
     }
+}
+
+/// A value as it was given, or the words that say what was.
+fn quoted(given: &str) -> String {
+    let is_said = ["not ", "for "].iter().any(|start| given.starts_with(start));
+    if is_said { given.to_string() } else { format!("`{given}`") }
 }
 
 /// Bytes as people count them.

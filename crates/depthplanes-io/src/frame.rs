@@ -64,6 +64,8 @@ pub struct Provenance {
     pub scale: Option<f64>,
     /// The stereo rig, if one was stated.
     pub stereo: Option<Stereo>,
+    /// Whether the numbers were stated to be disparities, by a flag, a rig or the camera file.
+    pub disparity: bool,
     /// Who stated the noise of single pixels; nobody if the sensor has none.
     pub noise: Option<Source>,
     /// Who stated the smooth part of the noise.

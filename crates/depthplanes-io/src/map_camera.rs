@@ -209,6 +209,7 @@ fn checked(camera: &Intrinsics, map: Size, is_size_stated: bool, lens: Option<&D
     }
     let is_wide = lens.is_some_and(|lens| lens.model() == DistortionModel::KannalaBrandt);
     let notes = [
+        mirrored(camera),
         middle_elsewhere(camera, map, is_size_stated),
         odd_pixels(camera),
         odd_field(camera, map).filter(|_| !is_wide),
@@ -303,6 +304,13 @@ fn middle_elsewhere(camera: &Intrinsics, map: Size, is_size_stated: bool) -> Opt
             "the principal point {cx},{cy} lies far from the middle of {w} x {h} pixels: right if the map is a part of a larger \
              picture, else check --intrinsics, --camera and --camera-size"
         )
+    })
+}
+
+/// A mirrored picture: unlike `fy` below 0, which means that y points up (ICL-NUIM), nobody's camera has it.
+fn mirrored(&Intrinsics { fx, .. }: &Intrinsics) -> Option<String> {
+    (fx < 0.0).then(|| {
+        format!("fx is {fx}, below 0: x points to the left, in planes and points as well; state it above 0 for x to the right")
     })
 }
 

@@ -24,6 +24,8 @@ pub struct SensorPreset {
     pub camera: Option<(usize, usize, Intrinsics)>,
     /// About how far it sees, metres, where that is known: its nominal range with much to spare.
     pub far_m: Option<f64>,
+    /// From how many metres on it sees, where that is known: its nominal range with some to spare.
+    pub near_m: Option<f64>,
     /// The value for "missing" beside the encoding's own.
     pub missing: Option<f64>,
     /// How far off a pixel is by itself, where that was published or measured.
@@ -79,7 +81,17 @@ impl fmt::Display for PresetNoise {
 }
 
 const fn preset(name: &'static str, encoding: &'static str, about: &'static str) -> SensorPreset {
-    SensorPreset { name, about, encoding, camera: None, far_m: None, missing: None, noise: None, smooth_noise: None }
+    SensorPreset {
+        name,
+        about,
+        encoding,
+        camera: None,
+        far_m: None,
+        near_m: None,
+        missing: None,
+        noise: None,
+        smooth_noise: None,
+    }
 }
 
 impl SensorPreset {
@@ -103,9 +115,14 @@ impl SensorPreset {
         self
     }
 
-    /// Structured light of the PrimeSense kind: 11 bits end behind 9.76 m.
+    const fn near(mut self, metres: f64) -> Self {
+        self.near_m = Some(metres);
+        self
+    }
+
+    /// Structured light of the PrimeSense kind: 11 bits end behind 9.76 m. Nearer than 0.4 m nothing is matched.
     const fn kinect(self) -> Self {
-        self.smooth_noise(KINECT_SMOOTH).far(10.0)
+        self.smooth_noise(KINECT_SMOOTH).far(10.0).near(0.3)
     }
 
     const fn missing(mut self, value: f64) -> Self {
@@ -155,8 +172,11 @@ pub const SENSOR_PRESETS: &[SensorPreset] = &[
     preset("kinect2", "millimetre", "Kinect v2, time of flight, kinect2_bridge's nominal camera")
         .camera(512, 424, [365.456, 365.456, 254.878, 205.395])
         .noise(KINECT2)
-        .far(20.0),
-    preset("azure-kinect", "millimetre", "Azure Kinect; each camera has its own calibration, state it").far(20.0),
+        .far(20.0)
+        .near(0.3), // nominally 0.5 m
+    preset("azure-kinect", "millimetre", "Azure Kinect; each camera has its own calibration, state it")
+        .far(20.0)
+        .near(0.2), // nominally 0.25 m
     preset("realsense-d4xx", "realsense", "RealSense D400 series; read intrinsics and depth scale from the camera")
         .far(30.0),
     preset("structure", "millimetre", "Structure Sensor, ScanNet's nominal depth camera")

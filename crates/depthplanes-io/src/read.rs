@@ -153,6 +153,7 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
             preset: preset.map(|preset| preset.name),
             scale,
             stereo: stereo.filter(|_| encoding.disparity),
+            disparity,
             noise: source(options.noise, preset.and_then(|preset| preset.noise)),
             smooth_noise: source(options.smooth_noise, preset.and_then(|preset| preset.smooth_noise)),
             ray_distance: options.ray_distance,
@@ -265,6 +266,13 @@ fn camera(options: &ReadOptions, preset: Option<&SensorPreset>, image: &mut Imag
         rectified: options.rectified,
         preset,
     };
+    let of_points = image.intrinsics.filter(|_| stated.intrinsics.is_none() && stated.file.is_none());
+    if let Some(camera @ Intrinsics { fx, fy, cx, cy }) = of_points {
+        image.warnings.push(format!(
+            "the camera is the one that the points of the cloud came from: fx {fx:.2}, fy {fy:.2}, cx {cx:.2}, cy {cy:.2}"
+        ));
+        return Ok(MapCamera { intrinsics: Some(camera), ..MapCamera::default() });
+    }
     let mut camera = map_camera(&stated, (image.width, image.height))?;
     image.warnings.append(&mut camera.notes);
     Ok(camera)

@@ -384,6 +384,29 @@ fn depths_beyond_the_presets_sensor_are_named() {
 }
 
 #[test]
+fn depths_nearer_than_the_presets_sensor_sees_are_named() {
+    for of in ["kinect1", "kinect2", "structure", "7-scenes"] {
+        let coarse = read(&counts(|_, depth| 62.0 * depth), &preset(of));
+        noted(of, &coarse, &["the preset's sensor sees from", "--scale"]);
+        assert_eq!(notes(&read(&counts(millimetres), &preset(of))), "", "{of}");
+    }
+}
+
+#[test]
+fn units_that_make_rooms_too_deep_are_asked_for() {
+    for units in [4000.0, 5000.0, 6000.0, 10_000.0] {
+        let bytes = counts(|at, depth| (units * depth + (at % 7) as f64).min(65_000.0));
+        noted("guessed", &read(&bytes, &camera()), &["farther than rooms are", "--encoding millimetre"]);
+        for options in [encoding("millimetre"), ReadOptions { scale: Some(units), ..camera() }] {
+            assert!(!notes(&read(&bytes, &options)).contains("farther"), "{units}");
+        }
+    }
+    for units in [1000.0, 2000.0] {
+        assert!(!notes(&read(&counts(|_, depth| units * depth), &camera())).contains("farther"), "{units}");
+    }
+}
+
+#[test]
 fn a_map_of_noise_is_no_surface() {
     let random = |at: usize| ((at as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as f64 / (1u64 << 24) as f64;
     let frame = read(&counts(|at, _| 500.0 + 3000.0 * random(at)), &camera());

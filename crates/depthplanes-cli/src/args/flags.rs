@@ -129,7 +129,9 @@ pub(super) fn reading() -> Vec<Arg> {
     let all = [
         listed(Arg::new("preset").value_parser(presets).value_name("SENSOR"))
             .help("A known sensor: its encoding, nominal camera and noise"),
-        numbers::<4>("intrinsics", "FX,FY,CX,CY").help("The camera: focal lengths and principal point, pixels"),
+        numbers::<4>("intrinsics", "FX,FY,CX,CY")
+            .help("The camera: focal lengths and principal point, pixels")
+            .long_help("The camera: focal lengths and principal point, pixels; FY below 0 means that y points up"),
         path("camera", "FILE").help("Camera file: ROS, OpenCV, RealSense, COLMAP, KITTI and many more"),
         listed(Arg::new("encoding").value_parser(PossibleValuesParser::new(encodings)).value_name("NAME"))
             .help("What the numbers mean; `depthplanes encodings` lists the names"),

@@ -13,6 +13,9 @@ pub(super) fn lines(name: &str, frame: &Frame, seen: &Summary, given: &Reading) 
     if seen.range.is_none() {
         return Vec::new();
     }
+    if seen.warnings.iter().any(|warning| warning.contains("is this a label image")) {
+        return vec!["nothing, if it is one: the regions are in it; `depthplanes score` compares label images".into()];
+    }
     let (words, encoding) = flags(frame, seen, given);
     let words: Vec<String> = [name.to_string()].into_iter().chain(words).map(|word| quoted(&word)).collect();
     let mut lines = vec![format!("depthplanes detect {}", plain(&words.join(" ")))];
@@ -26,12 +29,16 @@ pub(super) fn lines(name: &str, frame: &Frame, seen: &Summary, given: &Reading) 
 fn flags(frame: &Frame, seen: &Summary, given: &Reading) -> (Vec<String>, String) {
     let mut words = given.words.clone();
     let mut encoding = seen.encoding.to_string();
-    for proposed in seen.warnings.iter().filter_map(|warning| proposed(warning)) {
+    for proposed in seen.warnings.iter().filter_map(|warning| proposed(warning, given)) {
         if !words.contains(&proposed[0]) {
             if proposed[0] == "--encoding" {
                 encoding.clone_from(&proposed[1]);
             }
             words.extend(proposed);
+        } else if proposed[0] == "--raw-size"
+            && let Some(at) = words.iter().position(|word| *word == proposed[0])
+        {
+            words[at + 1].clone_from(&proposed[1]);
         }
     }
     let told = ["--encoding", "--preset", "--disparity", "--scale"];
@@ -42,14 +49,20 @@ fn flags(frame: &Frame, seen: &Summary, given: &Reading) -> (Vec<String>, String
     (words, encoding)
 }
 
-/// The flag that a note says to try, with its value if it takes one.
-fn proposed(warning: &str) -> Option<Vec<String>> {
+/// The flag that a note says to try beside those given, with its value if it takes one.
+fn proposed(warning: &str, given: &Reading) -> Option<Vec<String>> {
     let (_, rest) = warning.split_once("try --")?;
     let plain = |word: &str| word.trim_end_matches([',', ';', ':', ')', '.']).to_string();
     let mut words = rest.split_whitespace().map(plain);
     let (flag, value) = (format!("--{}", words.next()?), words.next());
     let with_value: Vec<String> = [Some(flag.clone()), value].into_iter().flatten().collect();
-    [with_value, vec![flag]].into_iter().find(|words| Reading::from_words(words).is_ok())
+    // The type of headerless samples makes sense beside their size alone.
+    let beside: Vec<String> = given
+        .raw_size
+        .filter(|_| flag == "--raw-type")
+        .map_or(Vec::new(), |(width, height)| vec!["--raw-size".into(), format!("{width}x{height}")]);
+    let is_read = |words: &Vec<String>| Reading::from_words(&[beside.as_slice(), words].concat()).is_ok();
+    [with_value, vec![flag]].into_iter().find(is_read)
 }
 
 /// What makes the planes metric.
@@ -82,10 +95,11 @@ fn quoted(word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::{proposed, quoted};
+    use crate::args::Reading;
 
     #[test]
     fn flags_are_taken_from_notes() {
-        let flags = |note| proposed(note).map(|words| words.join(" "));
+        let flags = |note| proposed(note, &Reading::default()).map(|words| words.join(" "));
         assert_eq!(flags("5 % are 65535: try --missing 65535").as_deref(), Some("--missing 65535"));
         assert_eq!(flags("often so: try --encoding tum, or --disparity").as_deref(), Some("--encoding tum"));
         assert_eq!(flags("swapped: try --swap-bytes").as_deref(), Some("--swap-bytes"));

@@ -9,7 +9,8 @@ use crate::outputs::Report;
 
 /// What a person should know of a result.
 pub fn doubts(report: &Report<'_>) -> Vec<String> {
-    [planes::out_of_sight(report), planes::huge(report), planes::scattered(report), reading::better(report)]
+    let reading = reading::better(report).or_else(|| reading::grows_below(report));
+    [planes::out_of_sight(report), planes::huge(report), planes::scattered(report), reading]
         .into_iter()
         .flatten()
         .collect()

@@ -5,9 +5,10 @@
 
 use depthplanes::{Detection, Detector, Planar, Sensor, ValueKind};
 
-use crate::frame::{Frame, Pixels};
+use crate::frame::Frame;
 use crate::outputs::Report;
 use crate::ray_distance;
+use crate::traps::{Probe, is_small};
 
 /// Above this share of pixels on planes nobody doubts a reading. Of recorded frames of rooms, three quarters have more.
 const SHARE: f64 = 0.8;
@@ -34,20 +35,29 @@ impl Score {
         let (gain, times) = (self.share - other.share, self.together / other.together.max(1e-6));
         self.share > 0.5 && ((gain > 0.15 && times > 1.5) || (gain > 0.05 && times > 2.5 && self.share > 0.6))
     }
+
+    /// Whether this reading makes planes of all, and the other one does not.
+    fn is_whole_beside(&self, other: &Score) -> bool {
+        self.share > 0.95 && self.share - other.share > 0.15 && self.together > 1.2 * other.together
+    }
 }
 
 /// A reading under which far more pixels lie on planes.
 pub(super) fn better(report: &Report<'_>) -> Option<String> {
     let (frame, as_read) = (report.frame, Score::of(report.detection));
-    let is_labels = frame.warnings.iter().any(|warning| warning.contains("label image"));
-    if is_labels || report.method.name != "planar" || as_read.share > SHARE || report.detection.valid_pixels < FEW {
+    let explained = ["label image", "try --swap-bytes", "try --preset kinect1-raw"];
+    let is_explained = |warning: &String| explained.iter().any(|words| warning.contains(words));
+    if frame.warnings.iter().any(is_explained)
+        || report.method.name != "planar"
+        || as_read.share > SHARE
+        || report.detection.valid_pixels < FEW
+    {
         return None;
     }
     let told = |reading: Score, advice: &str| {
         let [now, then] = [as_read.share, reading.share].map(|share| 100.0 * share);
         format!("{now:.0} % of the valid pixels lie on planes, but {then:.0} % if {advice}")
     };
-    let nearer_below = is_larger_below(frame)?;
     match frame.sensor.value_kind {
         ValueKind::Depth { .. } if frame.provenance.ray_distance => {
             let mut distances = frame.clone();
@@ -57,9 +67,9 @@ pub(super) fn better(report: &Report<'_>) -> Option<String> {
         }
         ValueKind::Depth { .. } => {
             let along_rays = as_ray_distance(frame).filter(|score| score.beats(&as_read));
-            // Most pictures have what is near below. Where large values are, they are near if they are inverse depth.
-            let inverse = nearer_below.then(|| with(frame, ValueKind::Disparity)).flatten();
-            let inverse = inverse.filter(|score| score.beats(&as_read));
+            // The points of a cloud are depths by their format.
+            let inverse = (frame.format != "pcd").then(|| with(frame, ValueKind::Disparity)).flatten();
+            let inverse = inverse.filter(|score| score.beats(&as_read) || score.is_whole_beside(&as_read));
             match (along_rays, inverse) {
                 (along, Some(score)) if along.is_none_or(|along| score.together > along.together) => Some(told(
                     score,
@@ -69,12 +79,36 @@ pub(super) fn better(report: &Report<'_>) -> Option<String> {
                 _ => None,
             }
         }
-        ValueKind::Disparity if frame.format == "pfm" && frame.provenance.is_guess() && !nearer_below => {
+        ValueKind::Disparity if frame.format == "pfm" && frame.provenance.is_guess() => {
             let score = with(frame, ValueKind::Depth { metres: 1.0 })?;
             score.beats(&as_read).then(|| told(score, "they are depth: try --encoding metre or millimetre"))
         }
         _ => None,
     }
+}
+
+/// How much larger values have to be in the lower half of a picture to look like disparity or inverse depth: what is near is
+/// mostly below. On 58 recorded maps of depth they are 1.14 times as large at the most, on 16 of 21 maps of disparity more than 1.3 times.
+const GROWS: f64 = 1.3;
+
+/// Values that grow towards the bottom of the picture, taken for depth by a guess, where planes do not say that they are
+/// depth, as they do of a ceiling.
+pub(super) fn grows_below(report: &Report<'_>) -> Option<String> {
+    let frame = report.frame;
+    let is_depth = matches!(frame.sensor.value_kind, ValueKind::Depth { .. }) && frame.format != "pcd";
+    let is_told = frame.warnings.iter().any(|warning| warning.contains("label image") || warning.contains("try --enc"));
+    if !is_depth || !frame.provenance.is_guess() || is_told || is_small(frame) {
+        return None;
+    }
+    let times = Probe::some(frame)?.grows_below().filter(|&times| times > GROWS)?;
+    let (depth, inverse) = (score(frame, frame.sensor)?, with(frame, ValueKind::Disparity)?);
+    let is_surely_depth = depth.share > SHARE && depth.together > inverse.together;
+    (!is_surely_depth).then(|| {
+        format!(
+            "values are {times:.1} times as large in the lower half of the picture as in the upper one, as disparity and inverse \
+             depth are: try --encoding inverse-depth, or --disparity; state the encoding if it is depth"
+        )
+    })
 }
 
 /// The frame read in another way.
@@ -91,20 +125,4 @@ fn as_ray_distance(frame: &Frame) -> Option<Score> {
 fn score(frame: &Frame, sensor: Sensor) -> Option<Score> {
     let mut detector = Detector::new(Planar::default()).ok()?.sensor(sensor);
     Some(Score::of(detector.detect(frame.view().ok()?).ok()?))
-}
-
-/// Whether values are larger in the lower half than in the upper one, by their medians; `None` if one of them is empty.
-fn is_larger_below(frame: &Frame) -> Option<bool> {
-    let half = |from: usize| {
-        let places = (from..from + frame.pixels.len() / 2).step_by(frame.pixels.len() / 4096 + 1);
-        let value = |at: usize| match &frame.pixels {
-            Pixels::U8(values) => f64::from(values[at]),
-            Pixels::U16(values) => f64::from(values[at]),
-            Pixels::F32(values) => f64::from(values[at]),
-        };
-        let mut values: Vec<f64> = places.map(value).filter(|value| *value > 0.0 && value.is_finite()).collect();
-        let middle = values.len() / 2;
-        (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
-    };
-    Some(half(frame.pixels.len() / 2)? > half(0)?)
 }

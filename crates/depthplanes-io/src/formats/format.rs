@@ -2,6 +2,8 @@
 //!
 //! Formats take these types from here, and the table of formats takes the formats.
 
+use depthplanes::Intrinsics;
+
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
 
@@ -86,6 +88,8 @@ pub struct Image {
     pub missing: Option<f64>,
     /// A and B of quantised inverse depth, `z = A / (value - B)`, if the file states them (ROS `compressedDepth`).
     pub quantisation: Option<[f64; 2]>,
+    /// The camera, if the numbers say it (points of an organised cloud).
+    pub intrinsics: Option<Intrinsics>,
     /// What a person should know: channels dropped, numbers converted.
     pub warnings: Vec<String>,
 }
@@ -99,7 +103,17 @@ impl Image {
         sample: &'static str,
         warnings: Vec<String>,
     ) -> Self {
-        Image { width, height, pixels, channels: 1, sample, missing: None, quantisation: None, warnings }
+        Image {
+            width,
+            height,
+            pixels,
+            channels: 1,
+            sample,
+            missing: None,
+            quantisation: None,
+            intrinsics: None,
+            warnings,
+        }
     }
 }
 

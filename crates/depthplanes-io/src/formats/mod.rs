@@ -10,6 +10,7 @@
 mod bmp;
 mod bytes;
 mod channels;
+mod cloud;
 mod compressed_depth;
 #[cfg(feature = "exr")]
 mod exr;
@@ -17,6 +18,7 @@ mod format;
 mod lzf;
 mod npy;
 mod npz;
+mod orientation;
 mod pcd;
 mod pclzf;
 mod pfm;

@@ -10,6 +10,7 @@ use std::borrow::Cow;
 
 use super::bytes::Cursor;
 use super::channels::reduce;
+use super::cloud::find_camera;
 use super::format::{DecodeOptions, Format, Image};
 use super::samples::{Sample, pixels};
 use crate::error::{Error, Result};
@@ -157,10 +158,15 @@ pub(super) fn decode(format: &'static str, bytes: &[u8], options: &DecodeOptions
     }
     let is_cloud = channels == 3 && matches!(sample, Sample::F32 | Sample::F64);
     let (first, kept) = if is_cloud { (2, 1) } else { (0, channels) };
-    let pixels = pixels(&by_rows(data, &header, chosen, first, kept), sample, header.big_endian, &mut warnings);
+    let of = |first, kept, warnings: &mut Vec<String>| {
+        pixels(&by_rows(data, &header, chosen, first, kept), sample, header.big_endian, warnings)
+    };
+    let pixels = of(first, kept, &mut warnings);
     let mut image = Image { channels: kept, ..Image::new(width, height, pixels, sample.name(), warnings) };
     if is_cloud && !options.channels {
         image.warnings.push("an organised cloud: its third channel is taken as z".to_string());
+        let [x, y, z] = [0, 1, 2].map(|axis| of(axis, 1, &mut Vec::new()));
+        find_camera(&mut image, [&x, &y, &z]);
     }
     reduce(format, &mut image, channels == 4, options)?;
     Ok(image)

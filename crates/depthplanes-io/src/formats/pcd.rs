@@ -1,10 +1,11 @@
 //! Organised point clouds of the Point Cloud Library (`.pcd`): ASCII, binary, binary_compressed.
 //!
 //! In: a cloud whose HEIGHT is above 1, one point a pixel, in the camera's optical frame (x right,
-//! y down, z forward). Out: z as `f32`, metres by PCL's custom. An unorganised cloud (HEIGHT 1) has
+//! y down, z forward). Out: z as `f32`, metres by PCL's custom, and the camera if the points say it. An unorganised cloud (HEIGHT 1) has
 //! no image to find planes in and is refused.
 
 use super::bytes::{Cursor, line};
+use super::cloud::find_camera;
 use super::format::{DecodeOptions, Format, Image};
 use super::lzf;
 use super::samples::{Sample, pixels};
@@ -41,12 +42,12 @@ struct Header {
     data: String,
 }
 
-/// Where z stands in a point.
+/// Where a field stands in a point.
 struct Layout {
-    /// Numbers before z, for ASCII.
+    /// Numbers before it, for ASCII.
     column: usize,
     columns: usize,
-    /// Bytes before z, for binary.
+    /// Bytes before it, for binary.
     offset: usize,
     stride: usize,
     sample: Sample,
@@ -54,33 +55,51 @@ struct Layout {
 
 fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
     let (header, data) = header(bytes)?;
-    let layout = layout(&header)?;
+    let layout = layout(&header, "z")?;
     if header.height == 1 {
         return Err(unreadable(format!("the cloud is unorganised: {} points in one row", header.width)));
     }
     let area = options.limits.area("pcd", header.width, header.height, layout.sample.bytes())?;
     let mut warnings = Vec::new();
-    let pixels = match header.data.as_str() {
-        "ascii" => Pixels::F32(ascii(data, area, &layout)?),
-        "binary" => {
-            let points = area.checked_mul(layout.stride).and_then(|needed| data.get(..needed)).ok_or_else(|| {
-                unreadable(format!("{area} points of {} bytes in {} bytes", layout.stride, data.len()))
-            })?;
-            let (from, to) = (layout.offset, layout.offset + layout.sample.bytes());
-            let z: Vec<u8> = points.chunks_exact(layout.stride).flat_map(|point| &point[from..to]).copied().collect();
-            pixels(&z, layout.sample, false, &mut warnings)
-        }
-        "binary_compressed" => pixels(&compressed(data, area, &layout, options)?, layout.sample, false, &mut warnings),
-        other => return Err(unreadable(format!("DATA {}", other.escape_default()))),
-    };
+    let pixels = field(&header, data, area, &layout, options, &mut warnings)?;
     if let Pixels::F32(z) = &pixels {
         let behind = z.iter().filter(|z| **z < 0.0).count();
         if behind > 0 {
             warnings.push(format!("z is negative at {behind} points: is the cloud in the optical frame (z forward)?"));
         }
     }
+    let other = |name: &str| field(&header, data, area, &self::layout(&header, name)?, options, &mut Vec::new());
+    let camera_of = [other("x"), other("y"), Ok(pixels.clone())];
     let (width, height) = (header.width as usize, header.height as usize);
-    Ok(Image::new(width, height, pixels, layout.sample.name(), warnings))
+    let mut image = Image::new(width, height, pixels, layout.sample.name(), warnings);
+    if let [Ok(x), Ok(y), Ok(z)] = &camera_of {
+        find_camera(&mut image, [x, y, z]);
+    }
+    Ok(image)
+}
+
+/// The numbers of one field, a point after the other.
+fn field(
+    header: &Header,
+    data: &[u8],
+    area: usize,
+    layout: &Layout,
+    options: &DecodeOptions,
+    warnings: &mut Vec<String>,
+) -> Result<Pixels> {
+    let bytes = match header.data.as_str() {
+        "ascii" => return Ok(Pixels::F32(ascii(data, area, layout)?)),
+        "binary" => {
+            let points = area.checked_mul(layout.stride).and_then(|needed| data.get(..needed)).ok_or_else(|| {
+                unreadable(format!("{area} points of {} bytes in {} bytes", layout.stride, data.len()))
+            })?;
+            let (from, to) = (layout.offset, layout.offset + layout.sample.bytes());
+            points.chunks_exact(layout.stride).flat_map(|point| &point[from..to]).copied().collect()
+        }
+        "binary_compressed" => compressed(data, area, layout, options)?,
+        other => return Err(unreadable(format!("DATA {}", other.escape_default()))),
+    };
+    Ok(pixels(&bytes, layout.sample, false, warnings))
 }
 
 fn header(bytes: &[u8]) -> Result<(Header, &[u8])> {
@@ -110,7 +129,7 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8])> {
     }
 }
 
-fn layout(header: &Header) -> Result<Layout> {
+fn layout(header: &Header, name: &str) -> Result<Layout> {
     let fields = header.fields.len();
     let counts = if header.counts.is_empty() { vec![1; fields] } else { header.counts.clone() };
     if header.sizes.len() != fields || header.types.len() != fields || counts.len() != fields {
@@ -120,11 +139,12 @@ fn layout(header: &Header) -> Result<Layout> {
     if header.sizes.iter().chain(&counts).any(|&number| number > 4096) {
         return Err(unreadable("a SIZE or COUNT above 4096"));
     }
-    let z = header.fields.iter().position(|field| field == "z").ok_or_else(|| unreadable("there is no field z"))?;
+    let z = header.fields.iter().position(|field| field == name);
+    let z = z.ok_or_else(|| unreadable(format!("there is no field {name}")))?;
     let sample = match (header.types[z].as_str(), header.sizes[z], counts[z]) {
         ("F", 4, 1) => Sample::F32,
         ("F", 8, 1) => Sample::F64,
-        (kind, size, count) => return Err(unreadable(format!("z is of TYPE {kind}, SIZE {size}, COUNT {count}"))),
+        (kind, size, count) => return Err(unreadable(format!("{name} is of TYPE {kind}, SIZE {size}, COUNT {count}"))),
     };
     let bytes = |fields: usize| (0..fields).map(|field| header.sizes[field] * counts[field]).sum();
     Ok(Layout {

@@ -9,6 +9,7 @@ use png::{BitDepth, ColorType, Decoder, DecodingError, Reader, Transformations};
 
 use super::channels::reduce;
 use super::format::{DecodeOptions, Format, Image};
+use super::orientation::{of_exif, orient};
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
 
@@ -63,6 +64,8 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
     let sample = if sample_bytes == 2 { "uint16" } else { "uint8" };
     let image = Image::new(width as usize, height as usize, pixels, sample, warnings);
     let mut image = Image { channels, ..image };
+    let orientation = reader.info().exif_metadata.as_deref().map_or(1, of_exif);
+    orient("png", &mut image, orientation)?;
     reduce("png", &mut image, alpha, options)?;
     Ok(image)
 }

@@ -6,8 +6,9 @@
 //! of `samples`.
 
 use super::format::{DecodeOptions, Format, Image};
-use super::samples::{Sample, pixels};
+use super::samples::{Sample, half, pixels};
 use crate::error::{Error, Result};
+use crate::frame::Pixels;
 
 pub(super) const FORMAT: Format = Format {
     name: "raw",
@@ -92,7 +93,11 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
         let other = if each == 1 { "" } else { "; another is stated with --raw-type" };
         warnings.push(format!("{each} byte{} a pixel are read as {name}{other}", if each == 1 { "" } else { "s" }));
     }
+    if options.raw_type.is_none() && sample == Sample::U16 {
+        warnings.extend(halves(bytes));
+    }
     let pixels = pixels(bytes, sample, big_endian, &mut warnings);
+    warnings.extend(swapped_size(&pixels, width, height));
     Ok(Image::new(width, height, pixels, sample.name(), warnings))
 }
 
@@ -158,6 +163,58 @@ fn plausible(bytes: &[u8], (_, sample, big_endian): &Type) -> bool {
         fitting += usize::from(if is_float { usual } else { value < f64::from(1 << 24) });
     }
     fitting * 100 >= some * 98 && finite > 0
+}
+
+/// What to say of 16-bit integers that are rather floats. Those of 0.1 to 32 m are the integers from 11,878 to 20,480, where no
+/// depth camera has all of its millimetres.
+fn halves(bytes: &[u8]) -> Option<String> {
+    let every = (bytes.len() / 2).div_ceil(1 << 16).max(1);
+    for (name, big_endian) in [("float16", false), ("float16-be", true)] {
+        let bits = bytes.chunks_exact(2).step_by(every).map(|pair| {
+            if big_endian { u16::from_be_bytes([pair[0], pair[1]]) } else { u16::from_le_bytes([pair[0], pair[1]]) }
+        });
+        // 0, infinities and NaN stand for nothing.
+        let mut metres: Vec<f32> = bits.filter(|bits| bits & 0x7fff != 0).map(half).filter(|m| m.is_finite()).collect();
+        let usual = metres.iter().filter(|metres| (0.1..32.0).contains(*metres)).count();
+        if usual < 64 || usual * 100 < metres.len() * 99 {
+            continue;
+        }
+        metres.sort_by(f32::total_cmp);
+        let [low, high] = [metres[metres.len() / 50], metres[metres.len() * 49 / 50]];
+        // Integers that are about equal say nothing.
+        if high > 1.2 * low {
+            return Some(format!(
+                "as 16-bit floats the values are depths of {low:.1} to {high:.1} m, as integers they are all alike: try \
+                 --raw-type {name}"
+            ));
+        }
+    }
+    None
+}
+
+/// What to say of rows that go on in the ones below only if the two sides of the size are exchanged.
+fn swapped_size(pixels: &Pixels, width: usize, height: usize) -> Option<String> {
+    let value = |at: usize| match pixels {
+        Pixels::U8(values) => f64::from(values[at]),
+        Pixels::U16(values) => f64::from(values[at]),
+        Pixels::F32(values) => f64::from(values[at]),
+    };
+    let area = width * height;
+    // How far apart values are that are so many samples apart: the mean share, in which edges count for little. Over 35 recorded
+    // maps rows that do not go on in the ones below have 0.019 or more, 13 times what the rows of the map have.
+    let apart = |step: usize| {
+        let places = (0..area - step).step_by(area / 4096 + 1).map(|at| [value(at), value(at + step)]);
+        let valid = places.filter(|pair| pair.iter().all(|value| *value > 0.0 && value.is_finite()));
+        let shares: Vec<f64> = valid.map(|[a, b]| ((a - b).abs() / (a + b)).min(0.1)).collect();
+        (shares.len() >= 64).then(|| shares.iter().sum::<f64>() / shares.len() as f64)
+    };
+    if width == height || width.min(height) < 8 {
+        return None;
+    }
+    let (stated, swapped) = (apart(width)?, apart(height)?);
+    (stated > 0.01 && stated > 4.0 * swapped).then(|| {
+        format!("rows of {width} do not go on in the rows below, rows of {height} do: try --raw-size {height}x{width}")
+    })
 }
 
 /// What to say of a size and type that the file has not.

@@ -13,6 +13,7 @@ use tiff::{ColorType, TiffError};
 
 use super::channels::reduce;
 use super::format::{DecodeOptions, Format, Image};
+use super::orientation::orient;
 use super::samples::{doubles, half, integers};
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
@@ -56,6 +57,8 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
     if white_is_zero {
         invert(&mut image);
     }
+    let orientation = decoder.find_tag_unsigned::<u16>(Tag::Orientation).map_err(from_tiff)?;
+    orient("tiff", &mut image, orientation.unwrap_or(1))?;
     let alpha = opacity_is_last(&mut decoder, image.channels);
     reduce("tiff", &mut image, alpha, options)?;
     Ok(image)

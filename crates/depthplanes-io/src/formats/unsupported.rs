@@ -97,8 +97,15 @@ fn text(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     if let Some((_, what, accepted)) = TEXTS.iter().find(|(prefix, ..)| start.starts_with(prefix)) {
         return Some((*what, *accepted));
     }
+    // numpy.savetxt writes a header behind `#`, and `nan` for what is missing.
+    let lines = start.lines().filter(|line| !line.trim_start().starts_with('#'));
+    let table = lines.map(|line| line.replace("nan", "0").replace("inf", "0")).collect::<Vec<_>>().join("\n");
     let is_number = |c: char| c.is_ascii_digit() || c.is_ascii_whitespace() || ".,;+-e".contains(c);
-    let numbers = start.len() > 8 && start.chars().all(is_number) && start.contains(|c: char| c.is_ascii_digit());
-    numbers
-        .then_some(("a text of numbers", "a depth map; numpy.loadtxt reads such a table, numpy.save makes it an .npy"))
+    let numbers = table.len() > 8 && table.chars().all(is_number) && table.contains(|c: char| c.is_ascii_digit());
+    let accepted = match table.chars().find(|c| ",;".contains(*c)) {
+        Some(',') => "a depth map: numpy.save('map.npy', numpy.loadtxt(FILE, delimiter=',')) makes it one",
+        Some(_) => "a depth map: numpy.save('map.npy', numpy.loadtxt(FILE, delimiter=';')) makes it one",
+        None => "a depth map: numpy.save('map.npy', numpy.loadtxt(FILE)) makes it one",
+    };
+    numbers.then_some(("a text of numbers", accepted))
 }

@@ -1,32 +1,9 @@
-//! Pictures that are no depth maps: label images, and pictures of 8 bits.
+//! Pictures that are no depth maps: those of 8 bits, and those that fill the range of their type.
 
 use depthplanes::ValueKind;
 
-use super::probe::{FEW, Probe, is_small};
+use super::probe::Probe;
 use crate::frame::{Frame, Pixels};
-
-/// Few values, each alike over whole regions, that jump at borders: a label image.
-pub(super) fn labels(frame: &Frame, probe: &Probe) -> Option<String> {
-    let levels = probe.levels();
-    // Disparity of whole pixels has few values, too.
-    let may_be = matches!(frame.sensor.value_kind, ValueKind::Depth { .. }) || frame.encoding == "grey";
-    if is_small(frame) || !probe.is_integer || !may_be || !(2..64).contains(&levels.len()) {
-        return None;
-    }
-    let rank = |value: f64| levels.partition_point(|&level| level < value) as i64;
-    let changes: Vec<i64> =
-        probe.pairs.iter().filter(|[a, b]| a != b).map(|[a, b]| (rank(*a) - rank(*b)).abs()).collect();
-    let jumps = changes.iter().filter(|&&levels| levels > 1).count();
-    // Surfaces of few levels change by one level at a time; labels of neighbours have nothing to do with each other.
-    let is_alike = changes.len() * 5 < probe.pairs.len();
-    let is_labels = probe.pairs.len() >= FEW && is_alike && (levels.len() == 2 || jumps * 3 > changes.len());
-    is_labels.then(|| {
-        let count = levels.len();
-        format!(
-            "only {count} different values, in regions of one value each: is this a label image or a mask, not depth?"
-        )
-    })
-}
 
 /// Grey levels.
 pub(super) fn eight_bits(frame: &Frame, _: &Probe) -> Option<String> {
@@ -49,32 +26,18 @@ pub(super) fn eight_bits(frame: &Frame, _: &Probe) -> Option<String> {
     })
 }
 
-/// How much larger values have to be in the lower half of a picture to look like disparity or inverse depth: what is near is
-/// mostly below. On 58 recorded maps of depth they are 1.14 times as large at the most, on 16 of 21 maps of disparity more than 1.3 times.
-const GROWS: f64 = 1.3;
-
-/// Values that grow towards the bottom of the picture, taken for depth by a guess.
-pub(super) fn grows_below(frame: &Frame, probe: &Probe) -> Option<String> {
-    let ValueKind::Depth { .. } = frame.sensor.value_kind else { return None };
-    let times = probe.below_to_above.filter(|&times| times > GROWS)?;
-    (frame.provenance.is_guess() && !is_small(frame) && probe.levels().len() > 32).then(|| {
-        format!(
-            "values are {times:.1} times as large in the lower half of the picture as in the upper one, as disparity and inverse \
-             depth are: try --encoding inverse-depth, or --disparity; state the encoding if it is depth"
-        )
-    })
-}
-
 /// Values over the whole range of a type, as programs make that scale relative depth for a picture.
 pub(super) fn whole_range(frame: &Frame, probe: &Probe) -> Option<String> {
     let ValueKind::Depth { .. } = frame.sensor.value_kind else { return None };
-    let (lowest, (largest, _)) = (probe.valid.first()?, probe.largest()?);
+    let (lowest, (largest, count)) = (probe.valid.first()?, probe.largest()?);
+    // A value for "nothing" lies apart from what is measured.
+    let next = probe.valid[..probe.valid.len() - count].last()?;
     let is_whole = match frame.pixels {
         Pixels::U8(_) => return None,
         Pixels::U16(_) => largest > 60_000.0 && *lowest < 6_500.0,
         Pixels::F32(_) => (0.9..=1.0).contains(&largest) && *lowest < 0.1,
     };
-    (frame.provenance.is_guess() && is_whole && probe.levels().len() > 256).then(|| {
+    (frame.provenance.is_guess() && is_whole && 1.25 * next > largest && probe.levels().len() > 256).then(|| {
         "the values fill a whole range, as relative depth of a network does: try --encoding inverse-depth if large values are \
          near; if they are far, there are no metres without the unit (--scale)"
             .to_string()

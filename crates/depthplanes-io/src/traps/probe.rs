@@ -8,7 +8,10 @@ use crate::frame::{Frame, Pixels};
 /// Fewer valid pixels say nothing.
 pub(super) const FEW: usize = 64;
 /// Maps of fewer pixels are examples written by hand, of few values and large steps; no camera makes them.
-pub(super) const SMALL: usize = 4096;
+const SMALL: usize = 4096;
+
+/// Pixels that are looked at: enough for shares of half a percent, cheap enough for every frame.
+const PIXELS: usize = 1 << 12;
 
 /// Evenly spaced pixels of a map.
 pub(crate) struct Probe {
@@ -23,7 +26,7 @@ pub(crate) struct Probe {
     /// Pixels among them that are below 0; only floats are.
     pub(crate) negative: usize,
     /// How many times the median of the valid values in the lower half of the picture is that in the upper half.
-    pub(crate) below_to_above: Option<f64>,
+    below_to_above: Option<f64>,
 }
 
 impl Probe {
@@ -36,6 +39,11 @@ impl Probe {
         let is_integer = !matches!(frame.pixels, Pixels::F32(_));
         let view: AnyView<'_> = frame.view()?;
         Ok(with_view!(view, view => Probe { is_integer, ..Probe::values(view, stride) }))
+    }
+
+    /// As many pixels as say enough of a map; none of one that the library does not accept.
+    pub(crate) fn some(frame: &Frame) -> Option<Probe> {
+        Probe::of(frame, PIXELS).ok()
     }
 
     fn values<T: Pixel>(view: DepthView<'_, T>, stride: usize) -> Probe {
@@ -81,6 +89,12 @@ impl Probe {
         self.valid.get(self.valid.len() / 2).copied()
     }
 
+    /// How many times as large values are in the lower half of the picture as in the upper one, by their medians; `None`
+    /// where there are too few.
+    pub(crate) fn grows_below(&self) -> Option<f64> {
+        self.below_to_above.filter(|_| self.levels().len() > 32)
+    }
+
     /// The largest value, and how many of the valid pixels have exactly that.
     pub(super) fn largest(&self) -> Option<(f64, usize)> {
         let &largest = self.valid.last()?;
@@ -108,7 +122,7 @@ fn is_coprime(mut a: usize, mut b: usize) -> bool {
 }
 
 /// Whether a map was written by hand.
-pub(super) fn is_small(frame: &Frame) -> bool {
+pub(crate) fn is_small(frame: &Frame) -> bool {
     frame.pixels.len() < SMALL
 }
 

@@ -8,6 +8,8 @@ use crate::presets;
 
 /// Median depths that a camera may have: a close-up, and the far side of a valley.
 const USUAL_M: std::ops::RangeInclusive<f64> = 0.05..=100.0;
+/// Median depth that no room has, metres. Of recorded frames of rooms, read right, it is 3.4 m at the most.
+const FAR_M: f64 = 12.0;
 /// Median depths that a flag is proposed for: from a desk to a street.
 const LIKELY_M: std::ops::RangeInclusive<f64> = 0.15..=60.0;
 
@@ -30,12 +32,26 @@ pub(super) fn median(frame: &Frame, probe: &Probe) -> Option<String> {
     if let Some(doubt) = doubt_of_depth(frame, median_m) {
         return Some(format!("the median depth would be {}: {doubt}", length(median_m)));
     }
-    let preset = presets::by_name(frame.provenance.preset?).ok()?;
-    let far_m = preset.far_m.filter(|&far_m| median_m > far_m)?;
+    let from = &frame.provenance;
+    let Some(preset) = from.preset.and_then(|name| presets::by_name(name).ok()) else {
+        // The same unit that is guessed for all maps of 16 bits.
+        let is_far = median_m > FAR_M && from.is_guess() && frame.encoding == "millimetre" && from.scale.is_none();
+        return is_far.then(|| {
+            format!(
+                "the median depth would be {} in millimetres, farther than rooms are: if this is one, its unit is finer (--scale 4000, \
+                 5000 or 10000 units per metre); state --encoding millimetre if it is right",
+                length(median_m)
+            )
+        });
+    };
+    let limit = match (preset.near_m, preset.far_m) {
+        (Some(near_m), _) if median_m < near_m => format!("from {} on", length(near_m)),
+        (_, Some(far_m)) if median_m > far_m => format!("about {}", length(far_m)),
+        _ => return None,
+    };
     Some(format!(
-        "the median depth would be {}, and the preset's sensor sees about {}: check --scale, --depth-scale and --encoding",
-        length(median_m),
-        length(far_m)
+        "the median depth would be {}, and the preset's sensor sees {limit}: check --scale, --depth-scale and --encoding",
+        length(median_m)
     ))
 }
 

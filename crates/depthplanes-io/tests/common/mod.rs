@@ -166,8 +166,12 @@ pub fn pgm(values: &[u16]) -> Vec<u8> {
 
 /// Rows bottom-up, little-endian.
 pub fn pfm(values: &[u16]) -> Vec<u8> {
-    let rows: Vec<u8> = values.chunks(WIDTH).rev().flat_map(floats_le).collect();
-    [format!("Pf\n{WIDTH} {HEIGHT}\n-1.0\n").into_bytes(), rows].concat()
+    pfm_of([WIDTH, HEIGHT], &values.iter().map(|&value| f32::from(value)).collect::<Vec<_>>())
+}
+
+pub fn pfm_of([width, height]: [usize; 2], values: &[f32]) -> Vec<u8> {
+    let rows = values.chunks(width).rev().flatten().flat_map(|value| value.to_le_bytes());
+    [format!("Pf\n{width} {height}\n-1.0\n").into_bytes(), rows.collect()].concat()
 }
 
 #[cfg(feature = "tiff")]
@@ -254,10 +258,15 @@ pub fn tiff_by_hand(pages: &[TiffPage], big_endian: bool) -> Vec<u8> {
 
 #[cfg(feature = "exr")]
 pub fn exr(values: &[u16]) -> Vec<u8> {
+    exr_of([WIDTH, HEIGHT], &values.iter().map(|&value| f32::from(value)).collect::<Vec<_>>())
+}
+
+#[cfg(feature = "exr")]
+pub fn exr_of([width, height]: [usize; 2], values: &[f32]) -> Vec<u8> {
     use exr::prelude::*;
-    let samples = FlatSamples::F32(values.iter().map(|&value| f32::from(value)).collect());
+    let samples = FlatSamples::F32(values.to_vec());
     let channels = AnyChannels::sort(SmallVec::from_vec(vec![AnyChannel::new("Z", samples)]));
-    let layer = Layer::new((WIDTH, HEIGHT), LayerAttributes::named("depth"), Encoding::SMALL_LOSSLESS, channels);
+    let layer = Layer::new((width, height), LayerAttributes::named("depth"), Encoding::SMALL_LOSSLESS, channels);
     let mut file = std::io::Cursor::new(Vec::new());
     Image::from_layer(layer).write().non_parallel().to_buffered(&mut file).unwrap();
     file.into_inner()

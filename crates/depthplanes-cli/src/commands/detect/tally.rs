@@ -46,9 +46,13 @@ impl Tally {
         if self.failed == 0 {
             return Ok(());
         }
-        let good = inputs - self.failed;
-        let message =
-            format!("{} of {inputs} inputs failed and have no output; the other {good} are done", self.failed);
+        let others = match inputs - self.failed {
+            0 => String::new(),
+            1 => "; the other one is done".to_string(),
+            good => format!("; the other {good} are done"),
+        };
+        let have = if self.failed == 1 { "has" } else { "have" };
+        let message = format!("{} of {inputs} inputs failed and {have} no output{others}", self.failed);
         Err(if self.machine { Failure::machine(message) } else { Failure::request(message) })
     }
 }
