@@ -3,7 +3,7 @@
 
 mod support;
 
-use depthplanes::noise::EnlargementFinder;
+use depthplanes::noise::{EnlargementFinder, SparseFinder};
 use depthplanes::{DepthView, Pixel};
 use depthplanes_io::{Pixels, ReadOptions};
 use serde_json::Value;
@@ -178,12 +178,14 @@ fn maps(folder: &Path) -> Vec<PathBuf> {
     entries.flat_map(|path| if path.is_dir() { maps(&path) } else { vec![path] }).collect()
 }
 
-fn is_enlarged<T: Pixel>(pixels: &[T], [width, height]: [usize; 2]) -> bool {
-    EnlargementFinder::default().find(&DepthView::new(pixels, width, height).unwrap()).is_some()
+/// Whether a map is taken for an enlarged one, and for a sparse one.
+fn taken_for<T: Pixel>(pixels: &[T], [width, height]: [usize; 2]) -> [bool; 2] {
+    let map = DepthView::new(pixels, width, height).unwrap();
+    [EnlargementFinder::default().find(&map).is_some(), SparseFinder::default().find(&map).is_some()]
 }
 
 #[test]
-fn no_recorded_map_is_taken_for_an_enlarged_one() {
+fn no_recorded_map_is_taken_for_an_enlarged_one_or_a_sparse_one() {
     let Some(data) = support::data() else { return };
     let mut looked_at = 0;
     for path in maps(&data) {
@@ -192,13 +194,14 @@ fn no_recorded_map_is_taken_for_an_enlarged_one() {
         let is_asked = !["label", "derived", "GT", "color"].iter().any(|word| name.contains(word));
         let Ok(image) = depthplanes_io::read(&path, &ReadOptions::default()) else { continue };
         let size = [image.width, image.height];
-        let is_enlarged = match &image.pixels {
-            Pixels::U8(pixels) => is_enlarged(pixels, size),
-            Pixels::U16(pixels) => is_enlarged(pixels, size),
-            Pixels::F32(pixels) => is_enlarged(pixels, size),
+        let [is_enlarged, is_sparse] = match &image.pixels {
+            Pixels::U8(pixels) => taken_for(pixels, size),
+            Pixels::U16(pixels) => taken_for(pixels, size),
+            Pixels::F32(pixels) => taken_for(pixels, size),
         };
         looked_at += usize::from(is_asked);
         assert!(!is_asked || is_enlarged == (name == NEAREST.file), "{name}");
+        assert!(!is_asked || is_sparse == (name == "gaps_row1of2.png"), "{name}");
     }
     assert!(looked_at > 100, "{looked_at} maps");
 }

@@ -463,3 +463,27 @@ fn pixels_that_stand_apart_are_named() {
         counts(|at, depth| if at.is_multiple_of(4) && (at / SIZE[0]).is_multiple_of(4) { 1000.0 * depth } else { 0.0 });
     noted("one of 16", &read(&bytes, &camera()), &["stand apart"]);
 }
+
+#[test]
+fn depth_in_few_steps_is_said_to_hide_how_surfaces_lie_and_finer_steps_are_not() {
+    for (baseline_m, step_px, is_coarse) in [
+        (0.2, 1.0, true),
+        (0.3, 1.0, true),
+        (0.1, 0.5, true),
+        (0.3, 0.25, false),
+        (0.2, 0.125, false),
+        (0.3, 0.0625, false),
+    ] {
+        let frame = read(
+            &counts(|_, depth_m| {
+                let disparity = (CAMERA.fx * baseline_m / depth_m / step_px).round().max(1.0) * step_px;
+                1e3 * CAMERA.fx * baseline_m / disparity
+            }),
+            &encoding("millimetre"),
+        );
+        let notes = notes(&frame);
+        let is_said = notes.iter().any(|note| note.contains("surfaces between two steps cannot be told apart"));
+        assert_eq!(is_said, is_coarse, "baseline {baseline_m}, steps of {step_px}: {notes:?}");
+        assert!(!notes.iter().any(|note| note.contains("--ray-distance")), "{notes:?}");
+    }
+}

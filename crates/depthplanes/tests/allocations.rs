@@ -66,11 +66,11 @@ fn allocated(call: impl FnOnce()) -> (usize, usize) {
 }
 
 /// A frame unlike the one before: constant, all missing, quantised slopes, noise from none to all,
-/// few holes to many.
-fn frame<T: Pixel>(random: &mut Random, number: u64, width: usize, height: usize) -> Vec<T> {
+/// few holes to many, of 100 pixels so many in turn.
+fn frame<T: Pixel>(random: &mut Random, number: u64, width: usize, height: usize, holes: [u64; 6]) -> Vec<T> {
     let most_levels = 1 << random.below(9);
     let (levels, step) = (1 + random.below(most_levels), 1 + random.below(20));
-    let holes = [0, 2, 30, 60, 95, 100][(number % 6) as usize];
+    let holes = holes[(number % 6) as usize];
     let slope = random.below(4) as usize;
     let pixel = |at: usize, random: &mut Random| {
         let (u, v) = (at % width, at / width);
@@ -79,6 +79,11 @@ fn frame<T: Pixel>(random: &mut Random, number: u64, width: usize, height: usize
     };
     (0..width * height).map(|at| pixel(at, random)).collect()
 }
+
+/// Holes of frames of any kind; of frames that `planar` works on as they are; and of those that it works on at a smaller size.
+const ANY: [u64; 6] = [0, 2, 30, 60, 95, 100];
+const DENSE: [u64; 6] = [0, 2, 20, 30, 10, 100];
+const SPARSE: [u64; 6] = [80; 6];
 
 fn everything() -> Ngaf {
     Ngaf::default().theta(3.0).min_pixels(2).window(5).passes(2).max_rms(50.0).min_fill(0.1).margin(1)
@@ -95,13 +100,13 @@ fn sensors() -> [Sensor; 3] {
 }
 
 /// `first` is the number of the first frame, so that it is in turn an empty, a simple and a noisy one.
-fn check<T: Pixel, M>(params: M, sensor: Sensor, (width, height): (usize, usize), first: u64)
+fn check<T: Pixel, M>(params: M, sensor: Sensor, (width, height): (usize, usize), first: u64, holes: [u64; 6])
 where
     M: Parameters + Copy + std::fmt::Debug,
 {
     let mut random = Random(first);
     let mut detector = Detector::new(params).unwrap().sensor(sensor);
-    let frames: Vec<Vec<T>> = (0..25).map(|k| frame(&mut random, first + k, width, height)).collect();
+    let frames: Vec<Vec<T>> = (0..25).map(|k| frame(&mut random, first + k, width, height, holes)).collect();
     let mut planes = 0;
     for (number, frame) in frames.iter().enumerate() {
         let view = DepthView::new(frame, width, height).unwrap().missing_value(T::from_f64(77.0));
@@ -128,9 +133,9 @@ fn later_frames_behind_a_lens_allocate_nothing() {
     let lens = Distortion::new(DistortionModel::BrownConrady, &[-0.2, 0.05]).unwrap();
     let [_, depth, stereo] = sensors().map(|sensor| sensor.distortion(lens));
     for sensor in [depth, stereo] {
-        check::<u16, _>(Ngaf::default().theta(3.0).min_pixels(2), sensor, (120, 90), 2);
-        check::<f32, _>(Ngaf::default().theta(3.0).min_pixels(2), sensor, (97, 33), 1);
-        check::<u16, _>(Planar::default().min_pixels(20), sensor, (160, 120), 2);
+        check::<u16, _>(Ngaf::default().theta(3.0).min_pixels(2), sensor, (120, 90), 2, ANY);
+        check::<f32, _>(Ngaf::default().theta(3.0).min_pixels(2), sensor, (97, 33), 1, ANY);
+        check::<u16, _>(Planar::default().min_pixels(20), sensor, (160, 120), 2, DENSE);
     }
 }
 
@@ -143,9 +148,9 @@ fn later_frames_allocate_nothing() {
             for (size, firsts, min) in [((120, 90), 6, 2), ((97, 33), 6, 2), ((900, 600), 1, 32)] {
                 let params = params.min_pixels(min);
                 for first in 0..firsts {
-                    check::<u8, _>(params, sensor, size, first);
-                    check::<u16, _>(params, sensor, size, first);
-                    check::<f32, _>(params, sensor, size, first);
+                    check::<u8, _>(params, sensor, size, first, ANY);
+                    check::<u16, _>(params, sensor, size, first, ANY);
+                    check::<f32, _>(params, sensor, size, first, ANY);
                 }
             }
         }
@@ -157,9 +162,11 @@ fn later_frames_of_planar_allocate_nothing() {
     for sensor in sensors() {
         for params in [Planar::default(), Planar::default().min_pixels(0).noise(2.0).inlier_threshold(1.0)] {
             for (size, first) in [((120, 90), 0), ((97, 33), 1), ((400, 300), 2)] {
-                check::<u8, _>(params, sensor, size, first);
-                check::<u16, _>(params, sensor, size, first);
-                check::<f32, _>(params, sensor, size, first);
+                for holes in [DENSE, SPARSE] {
+                    check::<u8, _>(params, sensor, size, first, holes);
+                    check::<u16, _>(params, sensor, size, first, holes);
+                    check::<f32, _>(params, sensor, size, first, holes);
+                }
             }
         }
     }
@@ -169,7 +176,7 @@ fn later_frames_of_planar_allocate_nothing() {
 fn later_frames_with_coplanar_planes_joined_allocate_nothing() {
     let (width, height) = (120, 90);
     let mut random = Random(5);
-    let clutter: Vec<Vec<u16>> = (0..12).map(|k| frame(&mut random, k, width, height)).collect();
+    let clutter: Vec<Vec<u16>> = (0..12).map(|k| frame(&mut random, k, width, height, DENSE)).collect();
     // The legs of a table cut the floor.
     let rooms = (1..=12).map(|seed| {
         let room = format!("room:sensor=kinect_white,size={width}x{height},seed={seed}").parse::<Spec>().unwrap();
@@ -204,7 +211,7 @@ fn outlines_of_frames_no_more_intricate_than_before_allocate_nothing() {
             let mut random = Random(4);
             let mut detector = Detector::new(Ngaf::default().theta(3.0).min_pixels(2)).unwrap().sensor(sensor);
             let mut outliner = Outliner::new(tolerance).unwrap();
-            let frames: Vec<Vec<u16>> = (0..12).map(|k| frame(&mut random, k, width, height)).collect();
+            let frames: Vec<Vec<u16>> = (0..12).map(|k| frame(&mut random, k, width, height, DENSE)).collect();
             for (number, frame) in frames.iter().chain(&frames).enumerate() {
                 let found = detector.detect(DepthView::new(frame, width, height).unwrap()).unwrap();
                 let camera = sensor.intrinsics.as_ref();
@@ -223,7 +230,7 @@ fn smaller_frames_allocate_nothing_either() {
     let mut random = Random(9);
     let mut detector = Detector::new(everything()).unwrap().sensor(sensors()[1]);
     for (number, (width, height)) in [(160, 120), (100, 120), (1, 1), (160, 119), (160, 120)].into_iter().enumerate() {
-        let frame: Vec<u16> = frame(&mut random, 1, width, height);
+        let frame: Vec<u16> = frame(&mut random, 1, width, height, DENSE);
         let view = DepthView::new(&frame, width, height).unwrap();
         let (calls, bytes) = allocated(|| assert!(detector.detect(view).is_ok()));
         assert!(number == 0 || (calls, bytes) == (0, 0), "{width}x{height}: {calls} calls, {bytes} bytes");
@@ -235,7 +242,7 @@ fn what_later_maps_are_rounded_to_and_enlarged_by_is_found_without_allocating() 
     let (mut random, mut finder) = (Random(6), RoundingFinder::default());
     let mut enlargement = EnlargementFinder::default();
     for number in 0..25 {
-        let frame: Vec<f32> = frame(&mut random, number, 160, 120);
+        let frame: Vec<f32> = frame(&mut random, number, 160, 120, DENSE);
         let view = DepthView::new(&frame, 160, 120).unwrap();
         let doubled: Vec<f32> = (0..160 * 120).map(|at| frame[at / 320 * 80 + at % 160 / 2]).collect();
         let doubled = DepthView::new(&doubled, 160, 120).unwrap();

@@ -4,12 +4,14 @@
 
 mod planes;
 mod reading;
+mod steps;
 
 use crate::outputs::Report;
 
 /// What a person should know of a result.
 pub fn doubts(report: &Report<'_>) -> Vec<String> {
-    let reading = reading::better(report).or_else(|| reading::grows_below(report));
+    // Of few values any reading makes planes.
+    let reading = steps::coarse(report).or_else(|| reading::better(report)).or_else(|| reading::grows_below(report));
     [planes::out_of_sight(report), planes::huge(report), planes::scattered(report), reading]
         .into_iter()
         .flatten()

@@ -102,7 +102,7 @@ impl Probe {
     }
 
     /// The different values, increasing.
-    pub(super) fn levels(&self) -> Vec<f64> {
+    pub(crate) fn levels(&self) -> Vec<f64> {
         let mut levels = self.valid.clone();
         levels.dedup();
         levels

@@ -17,8 +17,8 @@ use std::ops::Range;
 /// Rows of a part of the map; the parts are the same on any number of threads.
 const ROWS: usize = 64;
 
-/// Most missing pixels in a row or a column over which two pieces are one: the sides of two tiles, since regions of tiles
-/// go on beyond one that is empty.
+/// Most missing pixels in a row or a column over which two pieces are one. Regions go on beyond one tile that is empty, so
+/// that there may be so many between their pixels and two more.
 const WIDEST: usize = 8;
 
 /// The steps to pixels two steps away, each with the pixels that lie between.

@@ -5,9 +5,9 @@
 //! measured, so a bin in which two surfaces meet is divided between them.
 
 use crate::map::{DepthView, Pixel};
-use crate::noise::sparse::{EMPTY, Sparse};
-use crate::noise::{NoiseModel, Space};
+use crate::noise::{NoiseModel, Space, Sparse};
 use crate::statistics::least_squares::Moments;
+use crate::util::memory::reserve_to;
 
 /// The plane of a label.
 #[derive(Clone, Copy, Debug, Default)]
@@ -24,6 +24,8 @@ struct LabelPlane {
 #[derive(Debug, Default)]
 pub(crate) struct Spreader {
     planes: Vec<LabelPlane>,
+    /// Labels of a bin and of those around it.
+    around: Vec<u16>,
 }
 
 impl Spreader {
@@ -41,10 +43,11 @@ impl Spreader {
         image: &mut Vec<u16>,
     ) {
         self.fit(map, space, sparse, labels, noise);
-        image.clear();
+        reserve_to(image, map.area());
         image.resize(map.area(), 0);
         let ([columns, rows], validity) = (sparse.size, map.validity());
-        let mut around: Vec<u16> = Vec::with_capacity(9);
+        let Spreader { planes, around } = self;
+        reserve_to(around, 9);
         for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
             around.clear();
             for near in row.saturating_sub(1)..(row + 2).min(rows) {
@@ -59,7 +62,7 @@ impl Spreader {
                     if validity.holds(value) {
                         let q = space.q(value.into());
                         let squares = around.iter().map(|&label| {
-                            (self.planes[usize::from(label) - 1].square_of([u as f64, v as f64, q], noise), label)
+                            (planes[usize::from(label) - 1].square_of([u as f64, v as f64, q], noise), label)
                         });
                         let nearest = squares.min_by(|a, b| a.0.total_cmp(&b.0));
                         let on = nearest.filter(|(square, _)| *square <= inlier_threshold * inlier_threshold);
@@ -80,10 +83,10 @@ impl Spreader {
         noise: &NoiseModel,
     ) {
         let planes = &mut self.planes;
-        planes.clear();
+        reserve_to(planes, map.area().min(u16::MAX.into()));
         planes.resize(labels.iter().copied().max().unwrap_or(0).into(), LabelPlane::default());
         for (&label, &pixel) in labels.iter().zip(sparse.pixels) {
-            if label > 0 && pixel != EMPTY {
+            if label > 0 && pixel != Sparse::EMPTY {
                 let [u, v] = [pixel as usize % map.width(), pixel as usize / map.width()];
                 let q = space.q(map.row(v)[u].into());
                 let plane = &mut planes[usize::from(label) - 1];
@@ -124,8 +127,7 @@ impl LabelPlane {
 mod tests {
     use super::*;
     use crate::camera::ValueKind;
-    use crate::noise::SensorNoise;
-    use crate::noise::sparse::SparseFinder;
+    use crate::noise::{SensorNoise, SparseFinder};
 
     #[test]
     fn every_measured_pixel_has_the_nearest_plane_around_its_bin_and_what_lies_on_none_has_no_label() {

@@ -145,7 +145,9 @@ impl Estimator {
         let Some((value_kind, step)) = self.seen else { return Err(too_few) };
         let space = Space::of(value_kind);
         let rounding = self.rounding.unwrap_or(Rounding::NONE);
-        let Some(errors) = self.scales.errors(space, &rounding) else { return Err(too_few) };
+        // Tiles that lie apart show no smooth part, which is asked for here.
+        let errors = if blocks < FEW { None } else { self.scales.errors(space, &rounding) };
+        let Some(errors) = errors else { return Err(too_few) };
         let range = self.range();
         let ray = Some(errors.white * errors.ray).filter(|ray| *ray > 0.0);
         let noise = white(&errors, range, space, step);

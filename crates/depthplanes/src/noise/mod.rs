@@ -16,7 +16,7 @@ mod rounding;
 pub(crate) mod scales;
 pub(crate) mod sensor_noise;
 mod space;
-pub(crate) mod sparse;
+mod sparse;
 mod steps;
 mod table;
 
@@ -30,5 +30,6 @@ pub use rounding::{Rounding, RoundingFinder};
 pub use sensor_noise::SensorNoise;
 pub(crate) use space::LARGEST_Q;
 pub use space::Space;
+pub use sparse::{Sparse, SparseFinder};
 pub(crate) use steps::Steps;
 pub use table::{MAX_ROWS, NoiseTable};

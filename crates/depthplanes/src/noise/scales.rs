@@ -145,9 +145,10 @@ impl Scales {
     /// Looks at cells that have most of their usual pixels, as have their neighbours on either side.
     #[inline(always)]
     fn look_at_each(&mut self, cells: Cells, cell: impl Fn(usize) -> Cell) {
-        self.look_at_some(cells, (cells.columns * cells.rows).div_ceil(SAMPLE).max(1), &cell);
-        // A sample may miss every second tile.
-        if cells.level == 0 && self.tiles.len() < FEW {
+        let (stride, before) = ((cells.columns * cells.rows).div_ceil(SAMPLE).max(1), self.tiles.len());
+        self.look_at_some(cells, stride, &cell);
+        // A sample may fall between tiles that lie like the white squares of a chequer.
+        if cells.level == 0 && stride > 1 && self.tiles.len() == before {
             self.look_at_some(cells, 1, &cell);
         }
     }

@@ -20,35 +20,51 @@ const CERTAIN: f64 = 0.9;
 /// Most columns and rows of a bin. Of one pixel in 144 nothing but the largest planes is seen.
 const LARGEST: usize = 12;
 
-/// No measured pixel.
-pub(crate) const EMPTY: u32 = u32::MAX;
-
 /// The bins of a map and the pixel that stands for each.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Sparse<'a> {
+pub struct Sparse<'a> {
     /// Columns and rows of the map that one of the bins has.
-    pub(crate) side: [usize; 2],
+    pub side: [usize; 2],
     /// Columns and rows of bins.
-    pub(crate) size: [usize; 2],
-    /// For each bin, row by row, where its pixel stands in the map (row times width plus column), or [`EMPTY`].
-    pub(crate) pixels: &'a [u32],
+    pub size: [usize; 2],
+    /// For each bin, row by row, where its pixel stands in the map (row times width plus column), or [`Sparse::EMPTY`].
+    pub pixels: &'a [u32],
     /// Mean of where the pixels lie in their bins, columns and rows from the first.
-    pub(crate) centre: [f64; 2],
+    pub centre: [f64; 2],
     /// Root mean square of their distance from there along an axis, bins.
-    pub(crate) jitter: f64,
+    pub jitter: f64,
+}
+
+impl Sparse<'_> {
+    /// No pixel of a bin was measured.
+    pub const EMPTY: u32 = u32::MAX;
 }
 
 /// Finds out whether maps are sparse; reuses its memory.
 #[derive(Debug, Default)]
-pub(crate) struct SparseFinder {
+pub struct SparseFinder {
     /// For each pixel how many are measured above and to the left of it: one row and one column more than the map.
     counts: Vec<u32>,
     pixels: Vec<u32>,
 }
 
 impl SparseFinder {
-    /// The bins of a sparse map; `None` for others.
-    pub(crate) fn find<T: Pixel>(&mut self, map: &DepthView<'_, T>) -> Option<Sparse<'_>> {
+    /// The bins of a sparse map; `None` for others: those of which tiles of 4 x 4 pixels that are at least half measured
+    /// hold most of the pixels.
+    ///
+    /// ```
+    /// use depthplanes::DepthView;
+    /// use depthplanes::noise::SparseFinder;
+    /// // Every third row was measured.
+    /// let depth_mm: Vec<u16> = (0..60 * 60).map(|at| if at / 60 % 3 == 1 { 1000 } else { 0 }).collect();
+    /// let mut finder = SparseFinder::default();
+    /// let found = finder.find(&DepthView::new(&depth_mm, 60, 60)?).unwrap();
+    /// assert_eq!((found.side, found.centre, found.jitter), ([1, 3], [0.0, 1.0], 0.0));
+    /// # Ok::<(), depthplanes::Error>(())
+    /// ```
+    pub fn find<T: Pixel>(&mut self, map: &DepthView<'_, T>) -> Option<Sparse<'_>> {
+        // Room for maps that are sparse, or that nothing was measured of.
+        reserve_to(&mut self.counts, (map.width() + 1) * (map.height() + 1));
         if is_dense(map) {
             return None;
         }
@@ -65,7 +81,6 @@ impl SparseFinder {
     fn count<T: Pixel>(&mut self, map: &DepthView<'_, T>) {
         let SparseFinder { counts, .. } = self;
         let (validity, stride) = (map.validity(), map.width() + 1);
-        reserve_to(counts, stride * (map.height() + 1));
         counts.resize(stride, 0);
         for row in map.rows() {
             let above = counts.len() - stride;
@@ -128,7 +143,7 @@ impl SparseFinder {
         reserve_to(&mut self.pixels, map.area());
         let mut places = Places::default();
         for (row, column) in (0..size[1]).flat_map(|row| (0..size[0]).map(move |column| (row, column))) {
-            let mut best = (f64::INFINITY, EMPTY, [0.0; 2]);
+            let mut best = (f64::INFINITY, Sparse::EMPTY, [0.0; 2]);
             for v in row * side[1]..((row + 1) * side[1]).min(map.height()) {
                 for u in column * side[0]..((column + 1) * side[0]).min(map.width()) {
                     let place = [(u - column * side[0]) as f64, (v - row * side[1]) as f64];
@@ -140,7 +155,7 @@ impl SparseFinder {
             }
             let (_, pixel, place) = best;
             self.pixels.push(pixel);
-            if pixel != EMPTY {
+            if pixel != Sparse::EMPTY {
                 places.add(place);
             }
         }
@@ -243,7 +258,7 @@ mod tests {
                 assert_eq!(found.size, [SIZE[0].div_ceil(x), SIZE[1].div_ceil(y)]);
                 for (at, &pixel) in found.pixels.iter().enumerate() {
                     let [u, v] = [at % found.size[0] * x + u0, at / found.size[0] * y + v0];
-                    let expected = if u < SIZE[0] && v < SIZE[1] { (v * SIZE[0] + u) as u32 } else { EMPTY };
+                    let expected = if u < SIZE[0] && v < SIZE[1] { (v * SIZE[0] + u) as u32 } else { Sparse::EMPTY };
                     assert_eq!(pixel, expected);
                 }
             }
@@ -257,7 +272,8 @@ mod tests {
             let pixels = map_of(SIZE, |_, _| random.uniform() < share);
             let view = DepthView::new(&pixels, SIZE[0], SIZE[1]).unwrap();
             let found = finder.find(&view).unwrap();
-            let full = found.pixels.iter().filter(|&&pixel| pixel != EMPTY).count() as f64 / found.pixels.len() as f64;
+            let full =
+                found.pixels.iter().filter(|&&pixel| pixel != Sparse::EMPTY).count() as f64 / found.pixels.len() as f64;
             assert!(full > 0.7 && found.jitter > 0.1 && found.jitter < 0.3, "{share}: {full} {}", found.jitter);
             for (at, &chosen) in found.pixels.iter().enumerate() {
                 let first = [at % found.size[0] * found.side[0], at / found.size[0] * found.side[1]];
@@ -272,7 +288,7 @@ mod tests {
                         && (0..2).all(|axis| place[axis] / found.side[axis] == first[axis] / found.side[axis])
                 });
                 let nearest = own.min_by(|&a, &b| off(a).total_cmp(&off(b)));
-                assert_eq!(nearest.map_or(EMPTY, |pixel| pixel as u32), chosen);
+                assert_eq!(nearest.map_or(Sparse::EMPTY, |pixel| pixel as u32), chosen);
             }
         }
     }

@@ -231,20 +231,11 @@ impl RowEdges {
                 }
             }
         };
-        let pixels = &grid.sums.n;
         let mut look = |row: usize, column: usize, step: usize, room: usize| {
             let at = row * columns + column;
-            // Beyond a tile of no region the next one counts, and beyond two if nothing was measured in them.
-            let is_gap = |tiles: usize| (1..=tiles).all(|tile| region[at + tile * step] == NONE) && room > tiles;
-            let is_empty = |tiles: usize| (1..=tiles).all(|tile| pixels[at + tile * step] == 0.0);
-            let gap = if !is_gap(1) {
-                0
-            } else if is_gap(2) && is_empty(2) {
-                2
-            } else {
-                1
-            };
-            let beside = region[at + (gap + 1) * step];
+            // Beyond a tile of no region the next one counts.
+            let is_gap = region[at + step] == NONE && room > 1;
+            let beside = region[if is_gap { at + 2 * step } else { at + step }];
             if beside != NONE && beside != region[at] {
                 touch(region[at], beside, column, row);
             }
@@ -370,10 +361,7 @@ mod tests {
         let mut random = Random::new(4);
         for round in 0..20 {
             // More rows than are looked through at a time.
-            let mut grid = tiles(&mut random, 64, 1 + 45 * (round % 4));
-            // In half of the tiles of no region something was measured.
-            grid.sums.n =
-                grid.region.iter().map(|&id| f32::from(u8::from(id != NONE || random.uniform() < 0.5))).collect();
+            let grid = tiles(&mut random, 64, 1 + 45 * (round % 4));
             let mut expected: BTreeMap<[u32; 2], [f64; 3]> = BTreeMap::new();
             let at =
                 |column: usize, row: usize| (column < 64 && row < grid.rows).then(|| grid.region[row * 64 + column]);
@@ -382,13 +370,7 @@ mod tests {
                 for [right, down] in [[1, 0], [0, 1]] {
                     let next = at(column + right, row + down);
                     let beyond = at(column + 2 * right, row + 2 * down);
-                    let third = at(column + 3 * right, row + 3 * down);
-                    let pixels = |by: usize| grid.sums.n[(row + by * down) * 64 + column + by * right];
-                    let beside = match [next, beyond] {
-                        [Some(NONE), Some(NONE)] if pixels(1) + pixels(2) == 0.0 => third,
-                        [Some(NONE), _] => beyond,
-                        _ => next,
-                    };
+                    let beside = if next == Some(NONE) { beyond } else { next };
                     if let Some(beside) = beside.filter(|&id| id != own && id != NONE && own != NONE) {
                         let edge = expected.entry([own.min(beside), own.max(beside)]).or_default();
                         let place = [4.0 * column as f64 + 2.0, 4.0 * row as f64 + 2.0];

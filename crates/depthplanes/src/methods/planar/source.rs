@@ -16,14 +16,14 @@ use crate::components::{ConnectedComponents, Run};
 use crate::detection::Detection;
 use crate::error::Result;
 use crate::explanation::{Explanation, Finding, Suggestion, Verdict};
+use crate::limits::MAX_PLANES;
 use crate::map::{DepthView, Pixel, Validity};
 use crate::methods::extraction::{Extraction, STAGES, Wanted};
 use crate::methods::method::{Job, MethodInfo};
 use crate::methods::spread::Spreader;
 use crate::methods::tries::Tries;
 use crate::noise::scales::RAY;
-use crate::noise::sparse::{EMPTY, Sparse, SparseFinder};
-use crate::noise::{Enlargement, EnlargementFinder, NoiseModel, Space};
+use crate::noise::{Enlargement, EnlargementFinder, NoiseModel, Space, Sparse, SparseFinder};
 use crate::sensor::Sensor;
 use crate::util::memory::reserve_to;
 
@@ -143,6 +143,9 @@ impl Source {
         if min_area > 0.0 {
             job.sensor.check_metric("min-area")?;
         }
+        // Sources of maps of one size have several.
+        reserve_to(&mut found.labels, map.area());
+        reserve_to(&mut found.planes, map.area().min(MAX_PLANES));
         let mut noise = None;
         let view = reduced.source(map, pixels)?;
         with_source(runner, job, &reduced, |runner, job| {
@@ -301,7 +304,9 @@ fn chosen<'a, T: Pixel>(
 ) -> Result<DepthView<'a, f32>> {
     reserve_to(pixels, map.area());
     let value = |at: usize| map.row(at / map.width())[at % map.width()].to_f32();
-    pixels.extend(sparse.pixels.iter().map(|&pixel| if pixel == EMPTY { f32::NAN } else { value(pixel as usize) }));
+    pixels.extend(
+        sparse.pixels.iter().map(|&pixel| if pixel == Sparse::EMPTY { f32::NAN } else { value(pixel as usize) }),
+    );
     DepthView::new(&pixels[..], sparse.size[0], sparse.size[1])
 }
 
