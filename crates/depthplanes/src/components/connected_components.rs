@@ -217,8 +217,13 @@ impl Groups {
 
     /// Masks of row `v`, column u in bit u % 64 of word u / 64: its valid pixels, and the pixels where runs start.
     /// Rows beyond the map have empty masks.
+    #[inline(always)]
     pub(crate) fn masks(&self, v: usize) -> [&[u64]; 2] {
-        match self.strips.get(v / self.strips[0].rows.len()) {
+        let strip = match &self.strips[..] {
+            [only] => Some(only), // without a division
+            strips => strips.get(v / strips[0].rows.len()),
+        };
+        match strip {
             Some(strip) if strip.rows.contains(&v) => {
                 let words = strip.words_of(v - strip.rows.start);
                 [&strip.valid[words.clone()], &strip.starts[words]]

@@ -67,6 +67,14 @@ impl Bridge {
     }
 }
 
+/// A word of a row's mask: for each pixel whether there is one of those 3 to `WIDEST + 1` places to its right.
+#[inline(always)]
+fn some_ahead(row: &[u64], word: usize) -> u64 {
+    let part = |word: usize| row.get(word).map_or(0, |&bits| u128::from(bits));
+    let from = (part(word) | part(word + 1) << 64) >> 3;
+    (0..WIDEST - 1).fold(0, |any, by| any | from >> by) as u64
+}
+
 impl RowPairs {
     #[inline(always)]
     fn list(&mut self, rows: Range<usize>, map: Measured<'_>, image: &[u16], groups: &Groups) {
@@ -88,9 +96,25 @@ impl RowPairs {
                 for (way, (to, between)) in ways.into_iter().zip(STEPS) {
                     bits(way).for_each(|bit| self.list_pair([64 * word + bit, v], to, between, map, image, groups));
                 }
-                let ends = [own & !right & !ahead(here[0], word, 2), own & !under & !ahead(second[0], word, 0)];
-                for (ends, along) in ends.into_iter().zip([[1, 0], [0, 1]]) {
-                    bits(ends).for_each(|bit| self.list_across([64 * word + bit, v], along, map, image, groups));
+                let mut ends = own & !right & !ahead(here[0], word, 2);
+                ends = if ends == 0 { 0 } else { ends & some_ahead(here[0], word) };
+                while ends != 0 {
+                    let bit = ends.trailing_zeros() as usize;
+                    ends &= ends - 1;
+                    self.list_across([64 * word + bit, v], [1, 0], map, image, groups);
+                }
+                let mut ends = own & !under & !ahead(second[0], word, 0);
+                if ends != 0 {
+                    let mut any = 0;
+                    for row in 3..WIDEST + 2 {
+                        any |= ahead(groups.masks(v + row)[0], word, 0);
+                    }
+                    ends &= any;
+                }
+                while ends != 0 {
+                    let bit = ends.trailing_zeros() as usize;
+                    ends &= ends - 1;
+                    self.list_across([64 * word + bit, v], [0, 1], map, image, groups);
                 }
             }
         }
@@ -104,8 +128,12 @@ impl RowPairs {
         let room = if along[0] > 0 { stride - u } else { height - v };
         let step = along[0] + along[1] * stride;
         let at = v * stride + u;
-        let next = (1..room.min(WIDEST + 2)).find(|steps| !numbers[at + steps * step].is_nan());
-        if let Some(steps) = next.filter(|&steps| steps > 2 && image[at + steps * step] == image[at]) {
+        let mut steps = 1;
+        while steps < room.min(WIDEST + 2) && numbers[at + steps * step].is_nan() {
+            steps += 1;
+        }
+        let is_measured = (3..room.min(WIDEST + 2)).contains(&steps);
+        if is_measured && image[at + steps * step] == image[at] {
             let pair @ [a, b] =
                 [from, [0, 1].map(|axis| from[axis] + steps * along[axis])].map(|place| groups.at(place));
             if a != b && self.pairs.last() != Some(&pair) {
