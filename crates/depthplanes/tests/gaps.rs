@@ -28,11 +28,11 @@ fn lattices_and_chequers_leave_the_planes_of_the_room() {
     for step in [2, 3, 4, 5] {
         let pixels = room(|u, v| u % step == step / 2 && v % step == step / 2);
         check(&format!("every {step}. pixel"), &detect(&mut detector(), &pixels), 0.95);
-        let pixels = room(|u, v| (u + v) % step == 0);
+        let pixels = room(|u, v| (u + v).is_multiple_of(step));
         check(&format!("diagonals of {step}"), &detect(&mut detector(), &pixels), 0.95);
     }
     for side in [1, 2, 3, 4, 5, 8] {
-        let pixels = room(|u, v| (u / side + v / side) % 2 == 0);
+        let pixels = room(|u, v| (u / side + v / side).is_multiple_of(2));
         check(&format!("squares of {side}"), &detect(&mut detector(), &pixels), 0.95);
     }
 }
@@ -62,7 +62,7 @@ fn a_sparse_map_gives_the_same_on_any_number_of_threads_and_to_a_detector_that_s
     for threads in [2, 3] {
         let mut detector = detector().threads(threads);
         detect(&mut detector, &room(|_, _| true));
-        detect(&mut detector, &room(|_, v| v % 4 == 0));
+        detect(&mut detector, &room(|_, v| v.is_multiple_of(4)));
         let found = detect(&mut detector, &sparse);
         assert_eq!((&found.labels, &found.planes), (&expected.labels, &expected.planes));
     }
@@ -70,7 +70,7 @@ fn a_sparse_map_gives_the_same_on_any_number_of_threads_and_to_a_detector_that_s
 
 #[test]
 fn a_pixel_of_a_sparse_map_is_explained_by_its_bin_and_a_missing_one_as_missing() {
-    let pixels = room(|u, v| u % 2 == 0 && v % 3 == 1);
+    let pixels = room(|u, v| u.is_multiple_of(2) && v % 3 == 1);
     let view = DepthView::new(&pixels, SIZE[0], SIZE[1]).unwrap();
     let mut detector = detector();
     let found = detect(&mut detector, &pixels);
@@ -97,7 +97,7 @@ fn bends_of_a_sparse_map_are_curved_and_no_pixel_is_both() {
         let root = b * b - 4.0 * a * c;
         if root > 0.0 { (-b - root.sqrt()) / (2.0 * a) } else { 2.0 + 0.002 * v as f64 }
     };
-    let is_measured = |u: usize, v: usize| u % 2 == 1 && v % 2 == 0;
+    let is_measured = |u: usize, v: usize| u % 2 == 1 && v.is_multiple_of(2);
     let pixels: Vec<u16> = (0..SIZE[0] * SIZE[1])
         .map(|at| [at % SIZE[0], at / SIZE[0]])
         .map(

@@ -10,6 +10,7 @@ pub(crate) mod parameter;
 mod planar;
 pub(crate) mod rays;
 mod records;
+mod reduced;
 mod spread;
 mod tries;
 
