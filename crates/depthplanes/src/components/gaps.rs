@@ -1,9 +1,9 @@
 //! Bridges over gaps: pieces of a region with nothing but missing pixels between them are one plane.
 //!
 //! In: the region image and its groups. Out: fewer groups. Groups are 4-connected, and where a sensor sees a surface
-//! at a grazing angle half of the pixels are missing, so that what was measured of a plane falls apart. Along a row or a
-//! column pieces are one over up to [`WIDEST`] missing pixels: a grid of lines that nothing was measured on does not
-//! divide a wall. If its pixels
+//! at a grazing angle half of the pixels are missing, so that what was measured of a plane falls apart. If gaps
+//! are a pattern of the map ([`PATTERN`]), pieces are one over up to [`WIDEST`] missing pixels of a row or a column: a grid of
+//! lines that nothing was measured on does not divide a wall. If its pixels
 //! are missing at random, a plane holds together by its pixels' four next neighbours while 59 % are there, and by the
 //! twelve that are one or two steps away while 29 % are (the thresholds of site percolation on the square lattice).
 
@@ -20,6 +20,11 @@ const ROWS: usize = 64;
 /// Most missing pixels in a row or a column over which two pieces are one. Regions go on beyond one tile that is empty, so
 /// that there may be so many between their pixels and two more.
 const WIDEST: usize = 8;
+
+/// Of so many pixels of planes one has to lie before such a gap of 2 missing pixels and more, along its row or its column, for
+/// the gaps to be a pattern of the map. On recorded maps it is one of 50 at the most, the shadows of things among them,
+/// behind which another surface begins; under lines of two missing pixels each 32 it is one of 16.
+const PATTERN: usize = 32;
 
 /// The steps to pixels two steps away, each with the pixels that lie between.
 const STEPS: [([isize; 2], [[isize; 2]; 2]); 4] =
@@ -47,6 +52,9 @@ pub(crate) struct Bridge {
 struct RowPairs {
     /// Pairs of groups that belong to one plane.
     pairs: Vec<[u32; 2]>,
+    /// Pairs that do if wide gaps are a pattern, and pixels that lie before one.
+    across: Vec<[u32; 2]>,
+    before_gaps: usize,
 }
 
 impl Bridge {
@@ -63,6 +71,11 @@ impl Bridge {
         });
         reserve_to(pairs, 4 * image.len());
         parts.iter().for_each(|part| pairs.extend(&part.pairs));
+        let before_gaps: usize = parts.iter().map(|part| part.before_gaps).sum();
+        let pixels: usize = groups.sizes().iter().map(|&size| size as usize).sum();
+        if before_gaps * PATTERN > pixels {
+            parts.iter().for_each(|part| pairs.extend(&part.across));
+        }
         grouper.unite(pairs);
     }
 }
@@ -79,7 +92,9 @@ impl RowPairs {
     #[inline(always)]
     fn list(&mut self, rows: Range<usize>, map: Measured<'_>, image: &[u16], groups: &Groups) {
         // On a chequered image every second pixel is two steps from four others.
-        reserve_to(&mut self.pairs, 4 * ROWS * map.stride);
+        reserve_to(&mut self.pairs, 2 * ROWS * map.stride);
+        reserve_to(&mut self.across, 2 * ROWS * map.stride);
+        self.before_gaps = 0;
         for v in rows {
             let [here, below, second] = [v, v + 1, v + 2].map(|v| groups.masks(v));
             for word in 0..here[0].len() {
@@ -136,8 +151,9 @@ impl RowPairs {
         if is_measured && image[at + steps * step] == image[at] {
             let pair @ [a, b] =
                 [from, [0, 1].map(|axis| from[axis] + steps * along[axis])].map(|place| groups.at(place));
-            if a != b && self.pairs.last() != Some(&pair) {
-                self.pairs.push(pair);
+            self.before_gaps += 1;
+            if a != b && self.across.last() != Some(&pair) {
+                self.across.push(pair);
             }
         }
     }
@@ -172,6 +188,22 @@ mod tests {
     use crate::map::DepthView;
     use crate::util::random::Random;
 
+    /// Whether one of 32 pixels lies before a gap of two missing pixels and more with its own label behind it.
+    fn are_a_pattern(image: &[u16], q: &[f32], stride: usize, [width, height]: [usize; 2]) -> bool {
+        let places = (0..height).flat_map(|v| (0..width).map(move |u| [u, v]));
+        let labelled = places.filter(|[u, v]| image[v * stride + u] > 0);
+        let (mut pixels, mut before) = (0, 0);
+        for [u, v] in labelled {
+            pixels += 1;
+            for (step, room) in [(1, width - u), (stride, height - v)] {
+                let at = |steps: usize| v * stride + u + steps * step;
+                let next = (1..room.min(WIDEST + 2)).find(|&steps| !q[at(steps)].is_nan());
+                before += usize::from(next.is_some_and(|steps| steps > 2 && image[at(steps)] == image[at(0)]));
+            }
+        }
+        before * 32 > pixels
+    }
+
     /// The group of each pixel by a plain flood, numbered by first pixels: over the four neighbours of the same label, and
     /// over gaps.
     fn flood(
@@ -184,7 +216,8 @@ mod tests {
         // Along a row or a column all pixels between have to be missing, on a diagonal one of two.
         let mut steps: Vec<([isize; 2], Vec<[isize; 2]>)> =
             vec![([1, 1], vec![[1, 0], [0, 1]]), ([-1, 1], vec![[-1, 0], [0, 1]])];
-        for length in 1..=WIDEST as isize + 1 {
+        let widest = if are_a_pattern(image, q, stride, [width, height]) { WIDEST } else { 1 };
+        for length in 1..=widest as isize + 1 {
             steps.push(([length, 0], (1..length).map(|step| [step, 0]).collect()));
             steps.push(([0, length], (1..length).map(|step| [0, step]).collect()));
         }
@@ -231,7 +264,8 @@ mod tests {
             // More rows than a part has; more columns than a word has.
             let [width, height]: [usize; 2] = [[1, 1], [130, 70], [64, 5], [63, 130], [2, 9]][round % 5];
             let stride = width.next_multiple_of(64);
-            let (missing, off) = (random.between(0.0, 0.85), random.between(0.0, 0.3));
+            let (missing, off) =
+                (random.between(0.0, 0.85) * f64::from(u8::from(round % 3 > 0)), random.between(0.0, 0.3));
             let size = random.whole(2, 20);
             let (mut image, mut q) = (vec![0; stride * height], vec![f32::NAN; stride * height]);
             for (v, u) in (0..height).flat_map(|v| (0..width).map(move |u| (v, u))) {
