@@ -145,9 +145,9 @@ impl<T: Pixel> Values<T> {
         };
         let along = side(du, &|step| value(column.checked_add_signed(step), Some(row)));
         let across = side(dv, &|step| value(Some(column), row.checked_add_signed(step)));
-        let corner = along.zip(across).and_then(|((du, _), (dv, _))| {
-            value(column.checked_add_signed(du), row.checked_add_signed(dv))
-        });
+        let corner = along
+            .zip(across)
+            .and_then(|((du, _), (dv, _))| value(column.checked_add_signed(du), row.checked_add_signed(dv)));
         let known = [Some(q), along.map(|(_, q)| q), across.map(|(_, q)| q), corner];
         let (least, most) = known.into_iter().flatten().fold((f64::MAX, f64::MIN), |(a, b), q| (a.min(q), b.max(q)));
         let is_edge = most - least > SMOOTH * least.abs().min(most.abs());

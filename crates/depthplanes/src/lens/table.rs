@@ -118,9 +118,7 @@ impl<'a> Table<'a> {
     pub(super) fn undistort(&mut self, at: [f64; 2]) -> Option<[f64; 2]> {
         match self.lens.model() {
             DistortionModel::KannalaBrandt => self.lens.undistort(at),
-            DistortionModel::InverseBrownConrady => {
-                Some(self.lens.forward(at)).filter(|&ray| self.shows(ray, at))
-            }
+            DistortionModel::InverseBrownConrady => Some(self.lens.forward(at)).filter(|&ray| self.shows(ray, at)),
             DistortionModel::BrownConrady | DistortionModel::ModifiedBrownConrady => {
                 self.solve(at, |table, ray| table.shows(ray, at))
             }
