@@ -78,6 +78,13 @@ pub(crate) struct Detect {
     pub(crate) threads: usize,
 }
 
+impl Detect {
+    /// Whether anything but standard output is written.
+    pub(crate) fn writes_files(&self) -> bool {
+        !self.outputs.is_empty() || self.out_dir.is_some() || self.table.is_some()
+    }
+}
+
 /// `depthplanes explain`.
 pub(crate) struct Explain {
     pub(crate) input: OsString,

@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Outcome};
 use crate::natural;
-use depthplanes_io::formats::FORMATS;
+use depthplanes_io::formats::{FORMATS, left_out};
 use depthplanes_io::outputs::OUTPUTS;
 use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
@@ -110,10 +110,24 @@ fn maps_in(folder: &Path, recursive: bool) -> Outcome<Vec<Input>> {
     if maps.is_empty() {
         let known = FORMATS.iter().flat_map(|format| format.extensions);
         let known: Vec<String> = known.map(|extension| format!("*.{extension}")).collect();
-        let message = format!("{}: no map in this folder; looked for {}", folder.display(), known.join(", "));
+        let mut message = format!("{}: no map in this folder; looked for {}", folder.display(), known.join(", "));
+        if let Some((path, accepted)) = of_another_build(folder) {
+            message += &format!("; {} is there; accepted: {accepted}", file_name(&path));
+        }
         return Err(Failure::request(message));
     }
     Ok(in_natural_order(maps, folder))
+}
+
+/// A file in the folder whose format this build does not read but another does, and what to do about it.
+fn of_another_build(folder: &Path) -> Option<(PathBuf, &'static str)> {
+    let mut paths = folder.read_dir().ok()?.flatten().map(|entry| entry.path());
+    paths.find_map(|path| left_out(&extension(&path)).map(|accepted| (path, accepted)))
+}
+
+/// In small letters.
+fn extension(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
 /// The maps that stand in a folder itself.
@@ -182,7 +196,7 @@ pub(crate) fn files_in(folder: &Path) -> Outcome<Vec<PathBuf>> {
 }
 
 fn is_readable(path: &Path) -> bool {
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let extension = extension(path);
     let known = FORMATS.iter().any(|format| format.extensions.contains(&extension.as_str()));
     known && !file_name(path).starts_with('.') && path.is_file()
 }

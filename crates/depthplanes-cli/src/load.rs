@@ -3,12 +3,15 @@
 use crate::args::Reading;
 use crate::failure::{Failure, Outcome};
 use crate::inputs::Input;
+use crate::patience::patiently;
 use depthplanes::Intrinsics;
+use depthplanes::noise::NoiseTable;
 use depthplanes::scene::{ScenePixels, Spec};
 use depthplanes_io::camera_file::read_camera;
 use depthplanes_io::encoding::Stereo;
 use depthplanes_io::formats::{DecodeOptions, Limits};
-use depthplanes_io::{Frame, Pixels, Provenance, ReadOptions, memory};
+use depthplanes_io::{Frame, Pixels, Provenance, ReadOptions, memory, read_noise_table};
+use std::path::Path;
 
 /// The flags as the reading library takes them; reads the camera file.
 ///
@@ -35,7 +38,7 @@ pub(crate) fn options(reading: &Reading) -> Outcome<ReadOptions> {
         ..ReadOptions::default()
     };
     if let Some(path) = &reading.camera {
-        options = options.camera(&read_camera(path)?);
+        options = options.camera(&patiently(path.as_ref(), || read_camera(path))?);
     }
     if let Some([fx, fy, cx, cy]) = reading.intrinsics {
         options.intrinsics = Some(Intrinsics::new(fx, fy, cx, cy)?);
@@ -47,6 +50,14 @@ pub(crate) fn options(reading: &Reading) -> Outcome<ReadOptions> {
     }
     options.stereo = stereo(reading, &options)?;
     Ok(options)
+}
+
+/// The table of the noise, if one is given.
+///
+/// # Errors
+/// What is wrong with the file.
+pub(crate) fn noise_table(path: Option<&Path>) -> Outcome<Option<NoiseTable>> {
+    Ok(path.map(|path| patiently(path, || read_noise_table(path))).transpose()?)
 }
 
 /// The rig: flags go before the camera file, and the camera's own focal length is the rig's unless
@@ -80,7 +91,7 @@ pub(crate) fn frame(input: &Input, options: &ReadOptions) -> Outcome<Frame> {
             let needed =
                 6 * std::fs::metadata(path).map_or(0, |about| about.len().min(options.decode.limits.max_bytes as u64));
             memory::check(needed, needed)?;
-            depthplanes_io::read(path, options).map_err(refusal)
+            patiently(path, || depthplanes_io::read(path, options)).map_err(refusal)
         }
         Input::Standard => depthplanes_io::read_stream(std::io::stdin().lock(), "-", options).map_err(refusal),
         Input::Scene(spec) => {

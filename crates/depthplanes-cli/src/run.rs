@@ -110,11 +110,8 @@ impl Recipe {
         all.map(|(param, value)| format!("{} {value}", param.name)).collect::<Vec<_>>().join(", ")
     }
 
-    /// Refuses a map that there is no memory to look at.
-    ///
-    /// # Errors
-    /// Says how much is needed.
-    pub(crate) fn check_memory(&self, frame: &Frame) -> Outcome {
+    /// Bytes that are used and reserved for a map.
+    pub(crate) fn memory(&self, frame: &Frame) -> [u64; 2] {
         // Bytes a pixel as measured on maps of 3 and 12 million pixels. The two reserve for the worst map and use little.
         let (used, reserved) = match self.method.name {
             "planar" => (24, 264),
@@ -122,7 +119,7 @@ impl Recipe {
             _ => (144, 144),
         };
         let pixels = (frame.width * frame.height) as u64;
-        Ok(memory::check(used * pixels, reserved * pixels)?)
+        [used * pixels, reserved * pixels]
     }
 
     fn outliner(&self) -> Outcome<Option<Outliner>> {
@@ -164,6 +161,8 @@ pub(crate) struct Runner<'a> {
     recipe: &'a Recipe,
     sensor: Sensor,
     detector: Detector,
+    /// What the detector has memory for already.
+    kept: [u64; 2],
     outliner: Option<Outliner>,
 }
 
@@ -171,7 +170,7 @@ impl<'a> Runner<'a> {
     pub(crate) fn new(recipe: &'a Recipe) -> Self {
         let sensor = Sensor::default();
         let outliner = recipe.outliner().expect("the tolerance was checked");
-        Runner { recipe, sensor, detector: recipe.detector(sensor), outliner }
+        Runner { recipe, sensor, detector: recipe.detector(sensor), kept: [0; 2], outliner }
     }
 
     /// Finds the planes of a frame; with `repeat` above 0 it also measures so many runs.
@@ -183,7 +182,11 @@ impl<'a> Runner<'a> {
             self.sensor = frame.sensor;
             self.detector = self.recipe.detector(self.sensor);
         }
-        self.recipe.check_memory(frame)?;
+        let needed = self.recipe.memory(frame);
+        if needed > self.kept {
+            memory::check(needed[0], needed[1])?;
+            self.keep(needed);
+        }
         let view = frame.view()?;
         let detection = self.detector.detect(view)?.clone();
         let sensor = self.sensor;
@@ -191,6 +194,16 @@ impl<'a> Runner<'a> {
         let outlines = self.outliner.as_mut().map(outline).transpose()?;
         let times = (repeat > 0).then(|| self.measure(view, repeat)).transpose()?;
         Ok(Found { detection, outlines, times })
+    }
+
+    /// Says that there is so much memory for it, bytes used and reserved ([`Recipe::memory`]).
+    pub(crate) fn keep(&mut self, memory: [u64; 2]) {
+        self.kept = self.kept.max(memory);
+    }
+
+    /// Whether it needs no more than it has had before.
+    pub(crate) fn has_memory_for(&self, frame: &Frame) -> bool {
+        self.recipe.memory(frame) <= self.kept
     }
 
     /// The method's stages, and that of outlines if they are wanted.

@@ -1,4 +1,5 @@
-//! Signals that would end the program without a word become errors with an exit code of the machine's.
+//! Signals that would end the program without a word become errors with an exit code of the machine's, and those that
+//! interrupt it leave no file that is not finished.
 
 /// What to do about signals. Where it cannot be set the system's own way stays.
 #[cfg(unix)]
@@ -16,3 +17,33 @@ pub(crate) fn prepare() {
 
 #[cfg(not(unix))]
 pub(crate) fn prepare() {}
+
+/// Before files are written: waits, in a thread of its own, for a signal that interrupts the program. The files that are
+/// not finished are removed then, and the exit code is that of shells, 128 and the signal's number.
+#[cfg(unix)]
+pub(crate) fn tidy_up_if_interrupted() {
+    use depthplanes_io::outputs::remove_unfinished;
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::iterator::Signals;
+    let heard = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| !is_ignored(*signal));
+    let wait = move || {
+        let Ok(mut signals) = Signals::new(heard) else { return };
+        if let Some(signal) = signals.forever().next() {
+            remove_unfinished();
+            std::process::exit(128 + signal);
+        }
+    };
+    // Without a thread the system's own way stays.
+    drop(std::thread::Builder::new().stack_size(1 << 17).spawn(wait));
+}
+
+#[cfg(not(unix))]
+pub(crate) fn tidy_up_if_interrupted() {}
+
+/// Whether whoever started the program wants it to live on, as `nohup` does, and shells where it runs in the background.
+#[cfg(unix)]
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
+}

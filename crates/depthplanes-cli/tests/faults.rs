@@ -143,7 +143,9 @@ fn what_has_no_end_is_refused_at_its_first_bytes_or_at_the_limit() {
     }
     bench.shell("mkfifo endless; yes >endless & $DP detect endless").fails(2);
     let header = "{ printf 'P5 640 480 65535\\n'; cat /dev/zero; }";
-    let said = bench.shell(&format!("{header} | $DP detect - --max-bytes 2000000")).fails(2);
+    let said = bench.shell(&format!("{header} | $DP detect -")).fails(2);
+    assert!(said.contains("ends after 614417 bytes") && said.contains("head -c 614417"), "{said}");
+    let said = bench.shell(&format!("{header} | $DP detect - --max-bytes 600000")).fails(2);
     assert!(said.contains("raise it with --max-bytes N"), "{said}");
     let said = bench.shell("$DP detect /dev/zero --raw-size 640x480 --max-bytes 2000000").fails(2);
     assert!(said.contains("--max-bytes"), "{said}");
@@ -228,4 +230,122 @@ fn where_no_thread_can_be_made_the_work_is_done_without() {
     assert!(ran.err.contains("note: threads cannot be made"), "{ran:?}");
     assert!(ran.err.contains("note: only 0 of 2 threads can be made"), "{ran:?}");
     assert_eq!(ran.ok(), bench.run(&["detect", "map.pgm", "other.pgm"]).ok());
+}
+
+/// Small maps by a name and their bytes, each of a format whose header states the size.
+fn headed_maps() -> Vec<(&'static str, Vec<u8>)> {
+    let values: Vec<u16> = (0..32 * 24).map(|at| if at % 32 < 16 { 1003 } else { 1503 }).collect();
+    let little: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+    let floats: Vec<u8> = values.iter().flat_map(|&value| (f32::from(value) / 1000.0).to_le_bytes()).collect();
+    let header = format!("{:<117}\n", "{'descr': '<u2', 'fortran_order': False, 'shape': (24, 32), }");
+    // One strip behind the header, then the page: width, height, bits, grey, place, rows, length.
+    let entries = [(256, 32), (257, 24), (258, 16), (262, 1), (273, 8), (278, 24), (279, 1536)];
+    let page = entries.iter().flat_map(|(tag, value): &(u16, u32)| {
+        [&tag.to_le_bytes()[..], &4u16.to_le_bytes(), &1u32.to_le_bytes(), &value.to_le_bytes()].concat()
+    });
+    let page: Vec<u8> = page.collect();
+    let text: Vec<String> = values.iter().map(u16::to_string).collect();
+    vec![
+        ("m.png", depthplanes_io::outputs::grey16_png(32, 24, &values)),
+        ("m.pgm", two_planes(1003)),
+        ("t.pgm", format!("P2\n32 24\n65535\n{}\n", text.join("  ")).into_bytes()),
+        ("m.pfm", [&b"Pf\n32 24\n-1.0\n"[..], &floats].concat()),
+        ("m.npy", [&b"\x93NUMPY\x01\0\x76\0"[..], header.as_bytes(), &little].concat()),
+        ("m.tif", [&b"II*\0"[..], &1544u32.to_le_bytes(), &little, &7u16.to_le_bytes(), &page, &[0; 4]].concat()),
+    ]
+}
+
+#[test]
+fn a_pipe_is_read_no_further_than_its_map_can_reach() {
+    let bench = Bench::new("faults_headed");
+    for (name, bytes) in headed_maps() {
+        bench.write(name, &bytes);
+        let whole = bench.run(&["detect", name, "--encoding", "millimetre"]).ok();
+        let row = |text: &str| text.lines().skip(1).map(str::to_string).collect::<Vec<_>>();
+        for tail in ["true", "head -c 5000 /dev/zero"] {
+            let line = format!("{{ cat {name}; {tail}; }} | $DP detect - --encoding millimetre");
+            assert_eq!(row(&bench.shell(&line).ok()), row(&whole), "{line}");
+        }
+        for tail in ["/dev/zero", "/dev/urandom"] {
+            let start = Instant::now();
+            let line = format!("ulimit -v 400000; {{ cat {name}; cat {tail}; }} | $DP detect -");
+            let said = bench.shell(&line).fails(2);
+            assert!(said.contains("more follow without an end"), "{line}: {said}");
+            assert!(start.elapsed() < Duration::from_secs(5), "{line}");
+        }
+    }
+    // A beginning alone, and then anything.
+    for begin in [
+        r"\211PNG\r\n\032\n",
+        r"\211PNG\r\n\032\n\000\000\000\015IHDR\000\000\002\200\000\000\001\340\020",
+        r"P5 64 48 255\n",
+        r"II*\0",
+    ] {
+        for tail in ["/dev/zero", "/dev/urandom"] {
+            let start = Instant::now();
+            bench.shell(&format!("{{ printf '{begin}'; cat {tail}; }} | $DP detect -")).fails(2);
+            assert!(start.elapsed() < Duration::from_secs(5), "{begin}");
+        }
+    }
+    // What a header asks for beyond the limit is said before it is read.
+    let said = bench.shell("{ printf 'P5 60000 60000 65535\n'; cat /dev/zero; } | $DP detect -").fails(2);
+    assert!(said.contains("--max-bytes N"), "{said}");
+    let said = bench.shell("$DP detect /dev/zero --raw-size 640x480 --raw-type uint16").fails(2);
+    assert!(said.contains("head -c 614400"), "{said}");
+}
+
+#[test]
+fn a_pipe_that_nobody_writes_into_is_waited_for_and_that_is_said() {
+    let bench = Bench::with_map("faults_fifo");
+    let whole = bench.run(&["detect", "map.pgm"]).ok();
+    for words in ["detect pipe", "inspect pipe", "detect map.pgm --camera pipe", "score map.pgm pipe"] {
+        let line = format!("rm -f pipe; mkfifo pipe; timeout 3 $DP {words}");
+        let ran = bench.shell(&line);
+        assert_eq!(ran.code, Some(124), "{words}: {ran:?}");
+        assert!(ran.err.contains("note: pipe: waiting: this is a pipe"), "{words}: {ran:?}");
+    }
+    // A writer that comes late is heard.
+    let ran = bench.shell("rm -f pipe; mkfifo pipe; { sleep 1.5; cat map.pgm >pipe; } & $DP detect pipe");
+    assert!(ran.err.contains("note: pipe: waiting"), "{ran:?}");
+    assert_eq!(ran.ok().replace("pipe", "map.pgm"), whole);
+    let ran = bench.shell("rm -f pipe; mkfifo pipe; cat map.pgm >pipe & $DP detect pipe");
+    assert!(!ran.err.contains("waiting"), "{ran:?}");
+    assert_eq!(ran.ok().replace("pipe", "map.pgm"), whole);
+}
+
+#[test]
+fn jobs_for_which_there_is_no_memory_wait_for_each_other() {
+    let bench = Bench::new("faults_jobs");
+    let mut large = b"P5 3000 2000 65535\n".to_vec();
+    large.extend((0..6_000_000u32).flat_map(|at| (if at % 3000 < 1500 { 1003u16 } else { 1503 }).to_be_bytes()));
+    for name in ["a.pgm", "b.pgm", "c.pgm", "d.pgm"] {
+        bench.write(name, &large);
+    }
+    let words = "detect a.pgm b.pgm c.pgm d.pgm --labels-of";
+    let words = words.replace(" --labels-of", "");
+    let one = bench.shell(&format!("ulimit -v 3000000; exec $DP {words}")).ok();
+    let ran = bench.shell(&format!("ulimit -v 3000000; exec $DP {words} --jobs 3"));
+    assert!(ran.err.contains("no memory for so many maps at once"), "{ran:?}");
+    assert_eq!(ran.ok(), one);
+    assert!(!bench.shell(&format!("exec $DP {words} --jobs 2")).err.contains("memory"));
+    std::fs::remove_dir_all(&bench.folder).unwrap();
+}
+
+#[test]
+fn formats_that_this_build_does_not_read_are_not_named_as_accepted() {
+    let bench = Bench::new("faults_exr");
+    let is_built = cfg!(feature = "exr");
+    bench.write("m.exr", b"\x76\x2f\x31\x01\x02\0\0\0channels\0");
+    bench.write("unknown", b"\x01\x02\x03\x04\x05\x06\x07\x08\x09");
+    let said = bench.run(&["detect", "unknown"]).fails(2);
+    assert_eq!(said.contains("EXR"), is_built, "{said}");
+    assert!(said.contains("TIFF"), "{said}");
+    let formats = bench.run(&["formats"]).ok();
+    assert_eq!(formats.to_lowercase().contains("exr"), is_built, "{formats}");
+    for words in [&["detect", "m.exr"][..], &["inspect", "m.exr"], &["detect", "."], &["detect", "*.exr"]] {
+        let said = bench.run(words).fails(2);
+        assert_eq!(said.contains("--features exr"), !is_built, "{words:?}: {said}");
+    }
+    let help = bench.run(&["detect", "--help"]).ok();
+    assert_eq!(help.contains("EXR"), is_built, "{help}");
 }

@@ -140,3 +140,65 @@ fn one_output_may_go_to_standard_output() {
     assert!(said(&["detect", "map.pgm", "--labels", "-", "--json"]).contains("takes one output"));
     assert!(said(&["detect", "map.pgm", "map.pgm", "--labels", "-"]).contains("use --out-dir"));
 }
+
+#[test]
+fn a_run_that_is_interrupted_leaves_nothing_half_written() {
+    let bench = Bench::with_map("written_interrupted");
+    bench.write("t.csv", b"old");
+    for (signal, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
+        // The table is open while the second input, a pipe, is waited for.
+        bench.shell("rm -f pipe; mkfifo pipe").ok();
+        let words = ["detect", "map.pgm", "pipe", "--table", "t.csv", "--out-dir", "o", "--only", "labels"];
+        let mut child = bench.command().args(words).stdout(std::process::Stdio::null()).spawn().unwrap();
+        let start = std::time::Instant::now();
+        while !bench.folder.join("o/map.labels.png").exists() && start.elapsed().as_secs() < 20 {
+            std::thread::sleep(std::time::Duration::from_millis(20));
+        }
+        assert!(bench.names().iter().any(|name| name.ends_with(".part")), "{signal}");
+        bench.shell(&format!("kill -{signal} {}", child.id())).ok();
+        assert_eq!(child.wait().unwrap().code(), Some(code), "{signal}");
+        assert_eq!(bench.names(), ["map.pgm", "o", "pipe", "t.csv"], "{signal}");
+        assert_eq!(bench.read("t.csv"), b"old");
+        assert_eq!(support::names_in(&bench.folder.join("o")), ["map.labels.png"]);
+        std::fs::remove_dir_all(bench.folder.join("o")).unwrap();
+    }
+    // Whoever started it may want it to live on.
+    let line = "rm -f pipe; mkfifo pipe; trap '' HUP; $DP detect map.pgm pipe --table t.csv & child=$!; \
+                for i in 1 2 3 4 5 6 7 8 9; do ls .t.csv.*.part >/dev/null 2>&1 && break; sleep 0.05; done; sleep 0.2; kill -HUP $child; timeout 20 sh -c 'cat map.pgm >pipe'; wait $child";
+    bench.shell(line).ok();
+    assert!(bench.read("t.csv").len() > 100);
+}
+
+#[test]
+fn a_new_file_has_the_permissions_of_the_one_that_it_replaces() {
+    use std::os::unix::fs::PermissionsExt;
+    let bench = Bench::with_map("written_mode");
+    let mode = |name: &str| bench.folder.join(name).metadata().unwrap().permissions().mode() & 0o7777;
+    for (umask, fresh) in [("022", 0o644), ("077", 0o600), ("002", 0o664)] {
+        let outputs = "--labels l.png --planes p.json --table t.csv";
+        let run = || bench.shell(&format!("umask {umask}; exec $DP detect map.pgm {outputs}")).ok();
+        run();
+        for name in ["l.png", "p.json", "t.csv"] {
+            assert_eq!(mode(name), fresh, "{umask} {name}");
+        }
+        for kept in [0o600, 0o640, 0o664, 0o444, 0o755] {
+            for name in ["l.png", "p.json", "t.csv"] {
+                let path = bench.folder.join(name);
+                std::fs::set_permissions(path, std::fs::Permissions::from_mode(kept)).unwrap();
+            }
+            run();
+            for name in ["l.png", "p.json", "t.csv"] {
+                assert_eq!(mode(name), kept, "{umask} {name}");
+            }
+        }
+        // Through a link it is the file that counts.
+        let _ = std::fs::remove_file(bench.folder.join("link.png"));
+        symlink("l.png", bench.folder.join("link.png")).unwrap();
+        std::fs::set_permissions(bench.folder.join("l.png"), std::fs::Permissions::from_mode(0o620)).unwrap();
+        bench.shell(&format!("umask {umask}; exec $DP detect map.pgm --labels link.png")).ok();
+        assert_eq!(mode("l.png"), 0o620);
+        for name in ["l.png", "p.json", "t.csv"] {
+            std::fs::remove_file(bench.folder.join(name)).unwrap();
+        }
+    }
+}

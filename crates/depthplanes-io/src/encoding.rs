@@ -86,7 +86,7 @@ pub const ENCODINGS: &[Encoding] = &[
     Encoding {
         name: "metre",
         aliases: &["m", "meter"],
-        about: "depth in metres: ROS 32FC1, most NPY and EXR files",
+        about: "depth in metres: ROS 32FC1, most files of floats",
         unit: "m",
         scale: "map units per metre, 1",
         apply: |image, given| depth(image, given.scale.unwrap_or(1.0)),

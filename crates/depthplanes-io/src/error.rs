@@ -37,6 +37,14 @@ pub enum Error {
         /// The most that is allowed.
         limit: u64,
     },
+    /// A pipe or a device that goes on where its map has ended.
+    #[error(
+        "by its header the map ends after {end} bytes, and more follow without an end; accepted: one map, as from `head -c {end}`"
+    )]
+    Endless {
+        /// The bytes of the map.
+        end: u64,
+    },
     /// Memory that cannot be had.
     #[error("{} of {what} are needed and cannot be had; free some, or raise the limit of the process (ulimit -v)", megabytes(*bytes))]
     Memory {

@@ -9,20 +9,27 @@ use crate::error::{Error, Result};
 /// Bytes of a stream that are looked at before the others are read.
 const FIRST: u64 = 1 << 16;
 
+/// So many bytes may follow a map in a pipe: what programs append or fill up with, which readers skip.
+const BEYOND: u64 = 1 << 20;
+
+/// Where what begins with these bytes ends; none if it cannot be known.
+pub(crate) type Ends<'a> = &'a dyn Fn(&[u8]) -> Result<Option<u64>>;
+
 /// The bytes of a file.
 ///
 /// # Errors
 /// [`Error::Io`], also for what is no file; [`Error::Limit`] for more than `most` bytes, before they are read;
 /// [`Error::Memory`].
 pub(crate) fn read_bytes(path: &Path, most: usize) -> Result<Vec<u8>> {
-    read_known(path, most, |_| Ok(()))
+    read_known(path, most, &|_| Ok(None))
 }
 
-/// The bytes of a file. What may have no end, as pipes and devices, is read on only if `known` takes its first bytes.
+/// The bytes of a file. What may have no end, as pipes and devices, is read no further than to where it `ends` by the bytes
+/// so far, and somewhat beyond.
 ///
 /// # Errors
-/// As [`read_bytes`], and that of `known`.
-pub(crate) fn read_known(path: &Path, most: usize, known: impl Fn(&[u8]) -> Result<()>) -> Result<Vec<u8>> {
+/// As [`read_bytes`], and that of `ends`; [`Error::Endless`] for what goes on beyond its end.
+pub(crate) fn read_known(path: &Path, most: usize, ends: Ends<'_>) -> Result<Vec<u8>> {
     let name = path.display().to_string();
     let io = |source| Error::Io { path: name.clone(), source };
     // Before it is opened: a disk is none of our business.
@@ -32,7 +39,7 @@ pub(crate) fn read_known(path: &Path, most: usize, known: impl Fn(&[u8]) -> Resu
     }
     let file = File::open(path).map_err(io)?;
     if !kind.is_file() {
-        return read_stream(file, &name, most, known);
+        return read_stream(file, &name, most, ends);
     }
     let length = file.metadata().map_err(io)?.len();
     if length > most as u64 {
@@ -50,20 +57,26 @@ pub(crate) fn read_known(path: &Path, most: usize, known: impl Fn(&[u8]) -> Resu
 ///
 /// # Errors
 /// As [`read_known`]; `name` is for messages only.
-pub(crate) fn read_stream(
-    mut source: impl Read,
-    name: &str,
-    most: usize,
-    known: impl Fn(&[u8]) -> Result<()>,
-) -> Result<Vec<u8>> {
+pub(crate) fn read_stream(mut source: impl Read, name: &str, most: usize, ends: Ends<'_>) -> Result<Vec<u8>> {
     let mut read = || {
         let mut bytes = Vec::new();
-        read_to(source.by_ref().take(FIRST), &mut bytes, most)?;
-        if bytes.len() as u64 == FIRST {
-            known(&bytes)?;
-            read_to(source.by_ref(), &mut bytes, most)?;
+        let mut wanted = FIRST;
+        loop {
+            let missing = wanted - bytes.len() as u64;
+            read_to(source.by_ref().take(missing), &mut bytes, most)?;
+            if (bytes.len() as u64) < wanted {
+                return Ok(bytes);
+            }
+            match ends(&bytes)? {
+                None => {
+                    read_to(source.by_ref(), &mut bytes, most)?;
+                    return Ok(bytes);
+                }
+                Some(end) if end > most as u64 => return Err(too_long(end, most)),
+                Some(end) if end.saturating_add(BEYOND) <= wanted => return Err(Error::Endless { end }),
+                Some(end) => wanted = end + BEYOND,
+            }
         }
-        Ok(bytes)
     };
     read().map_err(|error: Error| error.named(name))
 }

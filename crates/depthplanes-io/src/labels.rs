@@ -32,7 +32,7 @@ const ACCEPTED: &str = "a label image: one channel of whole numbers from 0 (no p
 /// [`Error::Io`], and those of [`decode_labels`].
 pub fn read_labels(path: impl AsRef<Path>, options: &DecodeOptions) -> Result<LabelImage> {
     let path = path.as_ref();
-    let bytes = read_known(path, options.limits.max_bytes, |first| formats::begins(first, options))?;
+    let bytes = read_known(path, options.limits.max_bytes, &|first| formats::ends(first, options))?;
     decode_labels(&bytes, &path.display().to_string(), options)
 }
 

@@ -85,18 +85,19 @@ impl ReadOptions {
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Frame> {
     let path = path.as_ref();
     let name = path.display().to_string();
-    let bytes = read_known(path, options.decode.limits.max_bytes, |first| formats::begins(first, &options.decode))?;
+    let bytes = read_known(path, options.decode.limits.max_bytes, &|first| formats::ends(first, &options.decode))?;
     decode(&bytes, &name, options)
 }
 
 /// Reads one map from something that may have no end, such as standard input: after its first bytes it is read on only
-/// if they are of a known format. `name` is for messages only.
+/// if they are of a known format, and no further than a map can reach whose header states its size. `name` is for messages
+/// only.
 ///
 /// # Errors
-/// [`Error::Io`], and those of [`decode`].
+/// [`Error::Io`], [`Error::Endless`], and those of [`decode`].
 pub fn read_stream(source: impl Read, name: &str, options: &ReadOptions) -> Result<Frame> {
     let most = options.decode.limits.max_bytes;
-    let bytes = file_bytes::read_stream(source, name, most, |first| formats::begins(first, &options.decode))?;
+    let bytes = file_bytes::read_stream(source, name, most, &|first| formats::ends(first, &options.decode))?;
     decode(&bytes, name, options)
 }
 

@@ -487,3 +487,41 @@ fn depth_in_few_steps_is_said_to_hide_how_surfaces_lie_and_finer_steps_are_not()
         assert!(!notes.contains("--ray-distance"), "{notes:?}");
     }
 }
+
+#[test]
+fn a_lens_that_folds_within_the_picture_is_noted_with_the_share_of_it() {
+    use depthplanes::DistortionModel::*;
+    let lens = |model: depthplanes::DistortionModel, coefficients: &[f64], scale: f64| {
+        let camera = format!(
+            r#"{{"width":{},"height":{},"ppx":{},"ppy":{},"fx":{},"fy":{},"model":"{}","coeffs":{coefficients:?}}}"#,
+            SIZE[0],
+            SIZE[1],
+            CAMERA.cx,
+            CAMERA.cy,
+            CAMERA.fx * scale,
+            CAMERA.fy * scale,
+            model.name()
+        );
+        let camera = depthplanes_io::camera_file::parse(&camera).unwrap();
+        let options = ReadOptions { encoding: Some("metre".into()), ..ReadOptions::default() }.camera(&camera);
+        decode(&floats(|_, depth| depth), "m.npy", &options).unwrap().warnings
+    };
+    let folds = |notes: &[String]| notes.iter().find(|note| note.contains("have no ray")).cloned();
+    for (model, coefficients, angle) in [
+        (BrownConrady, &[-1.5][..], "25 degrees"),
+        (ModifiedBrownConrady, &[-1.5], "25 degrees"),
+        (BrownConrady, &[0.0, -2.0], "29 degrees"),
+        (KannalaBrandt, &[-1.5], "27 degrees"),
+    ] {
+        let note = folds(&lens(model, coefficients, 1.0)).unwrap_or_else(|| panic!("{model:?}"));
+        assert!(note.contains(&format!("the distortion model folds beyond {angle}")), "{note}");
+        assert!(note.contains(" % of the pixels have no ray"), "{note}");
+        // Where the picture ends before the fold nothing is said.
+        assert_eq!(folds(&lens(model, coefficients, 4.0)), None, "{model:?}");
+    }
+    for (model, coefficients) in
+        [(BrownConrady, &[-0.05][..]), (BrownConrady, &[0.1, -0.05]), (KannalaBrandt, &[0.0; 4])]
+    {
+        assert_eq!(folds(&lens(model, coefficients, 1.0)), None, "{model:?}");
+    }
+}

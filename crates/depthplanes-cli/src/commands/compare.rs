@@ -5,6 +5,7 @@ use crate::failure::{Failure, Outcome, note};
 use crate::inputs::{self, Input};
 use crate::load;
 use crate::measures::Scores;
+use crate::patience::patiently;
 use crate::run::{Recipe, Runner};
 use crate::table::{Align, aligned, row};
 use crate::terminal::plain;
@@ -63,7 +64,7 @@ pub(super) fn run(wanted: &Compare, out: &mut dyn Write) -> Outcome {
 fn truth(wanted: &Compare, input: &Input, frame: &Frame) -> Outcome<Option<Vec<u16>>> {
     let image = match (&wanted.truth, input) {
         (Some(path), _) => {
-            let image = read_labels(path, &DecodeOptions::default())?;
+            let image = patiently(path.as_ref(), || read_labels(path, &DecodeOptions::default()))?;
             if (image.width, image.height) != (frame.width, frame.height) {
                 let (path, of) = (path.display(), input.name());
                 return Err(Failure::request(format!(

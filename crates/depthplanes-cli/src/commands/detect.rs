@@ -9,12 +9,13 @@ use crate::args::Detect;
 use crate::failure::Outcome;
 use crate::folders::make_folder;
 use crate::inputs::{self, Input};
-use crate::run::{Recipe, Runner};
+use crate::run::Recipe;
+use crate::runners::Runners;
 use crate::terminal::plain;
 use crate::{load, pool, show};
 use depthplanes::noise::SensorNoise;
 use depthplanes_io::outputs::{self, OUTPUTS, Output, Report, TableForm};
-use depthplanes_io::{ReadOptions, doubts, memory, read_noise_table};
+use depthplanes_io::{ReadOptions, doubts, memory};
 use done::Done;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write;
@@ -32,19 +33,19 @@ pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     let inputs = inputs::expand(&wanted.inputs.words, wanted.inputs.recursive)?;
     check_outputs(wanted, &inputs)?;
     let mut options = load::options(&wanted.reading)?;
-    options.noise = wanted.noise_table.as_ref().map(read_noise_table).transpose()?.map(SensorNoise::Table);
+    options.noise = load::noise_table(wanted.noise_table.as_deref())?.map(SensorNoise::Table);
     let form = wanted.table.as_deref().map(TableForm::of).transpose()?;
     let files = wanted.outputs.iter().filter(|(_, path)| !is_standard_output(path)).cloned().collect();
     let plan = Plan { wanted, files, recipe: &recipe, options, form, alone: inputs.len() == 1 };
     let mut table = Table::begin(wanted, form)?;
     let bar = progress(inputs.len());
     let (mut tally, mut hint) = (Tally::default(), String::new());
+    let runners = Runners::new(&recipe);
     let work = || {
-        let mut runner = Runner::new(&recipe);
-        let (plan, inputs) = (&plan, &inputs);
+        let (plan, inputs, runners) = (&plan, &inputs, &runners);
         move |at: usize| {
             let input = &inputs[at];
-            plan.process(&mut runner, input).map_err(|failure| failure.of_input(&input.name()))
+            plan.process(runners, input).map_err(|failure| failure.of_input(&input.name()))
         }
     };
     pool::in_order(inputs.len(), wanted.jobs, work, |_, done| {
@@ -79,10 +80,10 @@ struct Plan<'a> {
 }
 
 impl Plan<'_> {
-    fn process(&self, runner: &mut Runner<'_>, input: &Input) -> Outcome<Done> {
+    fn process(&self, runners: &Runners<'_>, input: &Input) -> Outcome<Done> {
         let name = input.name();
         let frame = load::frame(input, &self.options)?;
-        let found = runner.detect(&frame, self.wanted.repeat)?;
+        let found = runners.detect(&frame, self.wanted.repeat)?;
         let report = Report {
             source: &name,
             frame: &frame,
@@ -127,11 +128,9 @@ impl Plan<'_> {
                 files.extend(only.iter().copied().map(file));
             }
         }
-        if !files.is_empty() {
-            // As measured: up to 37 bytes a pixel for all outputs.
-            let needed = 40 * (report.frame.width * report.frame.height) as u64;
-            memory::check(needed, needed)?;
-        }
+        // As measured: up to 37 bytes a pixel for all outputs.
+        let needed = if files.is_empty() { 0 } else { 40 * (report.frame.width * report.frame.height) as u64 };
+        memory::check(needed, needed)?;
         outputs::write_all(report, &files)?;
         Ok(files)
     }

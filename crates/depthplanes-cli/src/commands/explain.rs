@@ -13,7 +13,7 @@ use crate::terminal::plain;
 use depthplanes::Explanation;
 use depthplanes::explanation::{Finding, Quantity, Suggestion};
 use depthplanes::noise::SensorNoise;
-use depthplanes_io::read_noise_table;
+use depthplanes_io::memory;
 use serde_json::{Map, Value, json};
 use std::io::Write;
 
@@ -21,11 +21,12 @@ pub(super) fn run(wanted: &Explain, out: &mut dyn Write) -> Outcome {
     let recipe = Recipe::new(wanted.method, &wanted.parameters, 1)?;
     let input = only(inputs::expand(std::slice::from_ref(&wanted.input), false)?)?;
     let mut options = load::options(&wanted.reading)?;
-    options.noise = wanted.noise_table.as_ref().map(read_noise_table).transpose()?.map(SensorNoise::Table);
+    options.noise = load::noise_table(wanted.noise_table.as_deref())?.map(SensorNoise::Table);
     let name = input.name();
     let named = |failure: Failure| failure.of_input(&name);
     let frame = load::frame(&input, &options).map_err(named)?;
-    recipe.check_memory(&frame).map_err(named)?;
+    let [used, reserved] = recipe.memory(&frame);
+    memory::check(used, reserved).map_err(|error| named(error.into()))?;
     let why = recipe.detector(frame.sensor).explain(frame.view()?, wanted.at);
     let why = why.map_err(Failure::from).map_err(named)?;
     let text = if wanted.json { format!("{:#}\n", record(&name, &recipe, &why)) } else { readable(&name, &why) };

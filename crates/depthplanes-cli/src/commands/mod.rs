@@ -14,10 +14,19 @@ mod score;
 
 use crate::args::Command;
 use crate::failure::Outcome;
+use crate::signals;
 use std::io::Write;
 
 /// Runs a command; `out` is standard output.
 pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
+    let is_writing = match command {
+        Command::Detect(wanted) => wanted.writes_files(),
+        Command::Demo { .. } | Command::Compare(_) | Command::Eval(_) | Command::Paper(_) | Command::Man { .. } => true,
+        _ => false,
+    };
+    if is_writing {
+        signals::tidy_up_if_interrupted();
+    }
     match command {
         Command::Detect(wanted) => detect::run(wanted, out),
         Command::Explain(wanted) => explain::run(wanted, out),

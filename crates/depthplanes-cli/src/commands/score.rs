@@ -4,6 +4,7 @@ use crate::args::Score;
 use crate::failure::{Failure, Outcome, note};
 use crate::measures::{MEASURES, Measure, Scores, decimal, families};
 use crate::pairs::{self, Pair, Truth};
+use crate::patience::patiently;
 use crate::table::{Align, aligned, row};
 use crate::terminal::plain;
 use depthplanes::metrics::{Contingency, SegComp, Split, Tolerance};
@@ -76,7 +77,7 @@ fn read_truth(truth: &Truth) -> Outcome<LabelImage> {
 }
 
 fn read(path: &std::path::Path) -> Outcome<LabelImage> {
-    let image = read_labels(path, &DecodeOptions::default())?;
+    let image = patiently(path.as_ref(), || read_labels(path, &DecodeOptions::default()))?;
     image.warnings.iter().for_each(|warning| note(&format!("{}: {warning}", path.display())));
     Ok(image)
 }

@@ -15,6 +15,11 @@ pub(super) const FORMAT: Format = Format {
     sniff: |bytes| {
         bytes.starts_with(b"BM") && bytes.len() >= 18 && matches!(bytes[14], 12 | 40 | 52 | 56 | 64 | 108 | 124)
     },
+    ends: |bytes, _| {
+        let header = header(bytes).ok()?;
+        let stride = header.width.checked_mul(header.bits as u64)?.div_ceil(32) * 4;
+        stride.checked_mul(header.height)?.checked_add(header.pixels_at as u64)
+    },
     decode,
 };
 

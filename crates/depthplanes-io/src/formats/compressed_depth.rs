@@ -22,6 +22,10 @@ pub(super) const FORMAT: Format = Format {
     about: "ROS compressedDepth payload: 12-byte header, then PNG or RVL",
     extensions: &["compressedDepth"],
     sniff: |bytes| picture(bytes).is_some(),
+    ends: |bytes, options| {
+        let (picture, format) = picture(bytes)?;
+        Some((format.ends)(picture, options)?.saturating_add(HEADER_BYTES as u64))
+    },
     decode,
 };
 

@@ -17,6 +17,7 @@ pub(super) const FORMAT: Format = Format {
     about: "OpenEXR, channel Z, Y, depth or the only one",
     extensions: &["exr"],
     sniff: |bytes| bytes.starts_with(b"\x76\x2f\x31\x01"),
+    ends: |_, _| None,
     decode,
 };
 

@@ -128,6 +128,9 @@ pub struct Format {
     pub extensions: &'static [&'static str],
     /// Whether the bytes claim to be this format.
     pub sniff: fn(&[u8]) -> bool,
+    /// How many bytes a file that begins so has at the most, as far as these tell; the number may grow with further bytes. It
+    /// is for inputs that have no end of their own. `None` if that cannot be known.
+    pub ends: fn(&[u8], &DecodeOptions) -> Option<u64>,
     /// Reads the map.
     pub decode: fn(&[u8], &DecodeOptions) -> Result<Image>,
 }

@@ -36,6 +36,7 @@ pub use compressed_depth::{inverse_depth_value_kind, quantised_inverse_depth};
 pub use format::{DecodeOptions, Format, Image, Limits};
 pub use raw::raw_types;
 pub(crate) use spread::bytes as bytes_of_channels;
+pub use unsupported::left_out;
 
 use crate::error::{Error, Result};
 
@@ -66,15 +67,18 @@ pub fn sniff(bytes: &[u8]) -> Result<&'static Format> {
     FORMATS.iter().find(|format| (format.sniff)(bytes)).ok_or_else(|| unsupported::explain(bytes))
 }
 
-/// Whether bytes can be the beginning of a map, of which more may come.
+/// Where a map that begins so ends at the latest, of which more may come; none if that cannot be known yet.
 ///
 /// # Errors
-/// As [`sniff`].
-pub(crate) fn begins(first: &[u8], options: &DecodeOptions) -> Result<()> {
-    if options.raw_size.is_some() || rvl::begins(first) {
-        return Ok(());
+/// As [`sniff`], for bytes that no map begins with.
+pub(crate) fn ends(first: &[u8], options: &DecodeOptions) -> Result<Option<u64>> {
+    if options.raw_size.is_some() {
+        return Ok((raw::FORMAT.ends)(first, options));
     }
-    sniff(first).map(|_| ())
+    if rvl::begins(first) {
+        return Ok(None);
+    }
+    Ok((sniff(first)?.ends)(first, options))
 }
 
 /// Reads a map of whatever format, or headerless samples if their size is stated.

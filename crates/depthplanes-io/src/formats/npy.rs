@@ -20,6 +20,13 @@ pub(super) const FORMAT: Format = Format {
     about: "NumPy array of two axes, integers or floats",
     extensions: &["npy"],
     sniff: |bytes| bytes.starts_with(MAGIC),
+    ends: |bytes, _| {
+        let header = header("npy", bytes).ok()?;
+        let samples = [header.maps, header.rows, header.columns, header.channels]
+            .into_iter()
+            .try_fold(header.sample.bytes() as u64, u64::checked_mul)?;
+        samples.checked_add(header.data_at as u64)
+    },
     decode: |bytes, options| decode("npy", bytes, options),
 };
 

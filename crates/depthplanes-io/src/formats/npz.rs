@@ -19,6 +19,7 @@ pub(super) const FORMAT: Format = Format {
     about: "NumPy archive with one array of two axes, or a named one",
     extensions: &["npz"],
     sniff: |bytes| bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06"),
+    ends: |_, _| None,
     decode,
 };
 

@@ -17,6 +17,7 @@ pub(super) const FORMAT: Format = Format {
     about: "organised point cloud (PCD): its z as metres",
     extensions: &["pcd"],
     sniff: |bytes| bytes.starts_with(b"# .PCD") || bytes.starts_with(b"VERSION") || commented(bytes),
+    ends: |_, _| None,
     decode,
 };
 

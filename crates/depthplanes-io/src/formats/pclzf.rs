@@ -15,6 +15,7 @@ pub(super) const FORMAT: Format = Format {
     about: "PCLZF depth frame (Point Cloud Library)",
     extensions: &["pclzf"],
     sniff: |bytes| bytes.starts_with(b"PCLZF"),
+    ends: |_, _| None,
     decode,
 };
 

@@ -16,12 +16,21 @@ pub(super) const FORMAT: Format = Format {
     about: "portable float map, both byte orders",
     extensions: &["pfm"],
     sniff: |bytes| bytes.len() > 2 && matches!(&bytes[..2], b"Pf" | b"PF") && bytes[2].is_ascii_whitespace(),
+    ends,
     decode,
 };
 
 fn unreadable(wrong: impl Into<String>) -> Error {
     let accepted = "Pf or PF, width, height, a scale other than 0, then all the 32-bit floats";
     Error::Unreadable { format: "pfm", wrong: wrong.into(), accepted }
+}
+
+fn ends(bytes: &[u8], _: &DecodeOptions) -> Option<u64> {
+    let channels = if bytes.get(1) == Some(&b'F') { 3 } else { 1 };
+    let (words, data) = header_words::<3>(bytes.get(2..)?)?;
+    let number = |word: &str| word.parse::<u64>().ok();
+    let floats = number(words[0])?.checked_mul(number(words[1])?)?.checked_mul(channels)?;
+    floats.checked_mul(4)?.checked_add((bytes.len() - data.len()) as u64)
 }
 
 fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {

@@ -18,6 +18,7 @@ pub(super) const FORMAT: Format = Format {
     about: "PNG, 8 or 16 bits, grey (or equal channels)",
     extensions: &["png"],
     sniff: |bytes| bytes.starts_with(&SIGNATURE),
+    ends: |bytes, _| chunks_end(bytes),
     decode,
 };
 
@@ -28,6 +29,34 @@ const BEST_RATIO: usize = 1032;
 
 fn unreadable(error: DecodingError) -> Error {
     Error::Unreadable { format: "png", wrong: error.to_string(), accepted: ACCEPTED }
+}
+
+/// Behind the last chunk, or as far as the chunks lead; no further than one that no PNG file has.
+fn chunks_end(bytes: &[u8]) -> Option<u64> {
+    /// Descriptions, profiles and the like are shorter in any file that other readers take (libpng's limit).
+    const LONGEST: u64 = 8_000_000;
+    let number = |at: usize| Some(u32::from_be_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
+    let [width, height] = [16, 20].map(|at| number(at).map_or(0, u64::from));
+    // 4 channels of 16 bits, a byte a row, and twice that for what is packed badly.
+    let most_data = (16 * width + 2).saturating_mul(height).saturating_add(LONGEST);
+    let (mut at, mut data) = (SIGNATURE.len(), 0u64);
+    while let Some(length) = number(at).map(u64::from) {
+        let Some(kind) = bytes.get(at + 4..at + 8) else { break };
+        let is_data = kind == b"IDAT";
+        data += if is_data { length } else { 0 };
+        let is_one =
+            kind.iter().all(u8::is_ascii_alphabetic) && if is_data { data <= most_data } else { length <= LONGEST };
+        if !is_one {
+            return Some(at as u64 + 8);
+        }
+        let end = at as u64 + 12 + length;
+        if kind == b"IEND" || end > bytes.len() as u64 {
+            // The head of the next chunk is read with this one.
+            return Some(if kind == b"IEND" { end } else { end + 8 });
+        }
+        at = end as usize;
+    }
+    Some(at as u64 + 8)
 }
 
 fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {

@@ -20,12 +20,29 @@ pub(super) const FORMAT: Format = Format {
             && matches!(bytes[1], b'2' | b'3' | b'5' | b'6')
             && (bytes[2].is_ascii_whitespace() || bytes[2] == b'#')
     },
+    ends,
     decode,
 };
 
 fn unreadable(wrong: impl Into<String>) -> Error {
     let accepted = "P2, P3, P5 or P6, width, height and a largest value of 1 to 65535, then all the pixels";
     Error::Unreadable { format: "pnm", wrong: wrong.into(), accepted }
+}
+
+/// The header, and all the samples; of text so many bytes for each that the numbers may stand in columns.
+fn ends(bytes: &[u8], options: &DecodeOptions) -> Option<u64> {
+    let (words, data) = header_words::<3>(bytes.get(2..)?)?;
+    let number = |word: &str| word.parse::<u64>().ok();
+    let (width, height, largest) = (number(words[0])?, number(words[1])?, number(words[2])?);
+    let channels = if matches!(bytes[1], b'3' | b'6') { 3 } else { 1 };
+    let each = match bytes[1] {
+        b'2' | b'3' => 32,
+        _ if largest > 255 => 2,
+        _ => 1,
+    };
+    let samples = width.checked_mul(height)?.checked_mul(channels)?;
+    let end = samples.checked_mul(each)?.checked_add((bytes.len() - data.len()) as u64)?;
+    Some(end).filter(|&end| each < 32 || end <= options.limits.max_bytes as u64)
 }
 
 fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {

@@ -15,6 +15,16 @@ pub(super) const FORMAT: Format = Format {
     about: "headerless samples, integers or floats, with a stated size",
     extensions: &["raw", "bin", "z16"],
     sniff: |_| false,
+    ends: |_, options| {
+        let (width, height) = options.raw_size?;
+        let most = match &options.raw_type {
+            Some(name) => stated(name).ok()?.1.bytes(),
+            None => Sample::F64.bytes(),
+        };
+        let end = (width as u64).checked_mul(height as u64)?.checked_mul(most as u64)?;
+        // The largest type is a bound alone.
+        Some(end).filter(|&end| options.raw_type.is_some() || end <= options.limits.max_bytes as u64)
+    },
     decode,
 };
 

@@ -15,6 +15,7 @@ pub(super) const FORMAT: Format = Format {
     about: "RVL-packed 16-bit depth behind its width and height",
     extensions: &["rvl"],
     sniff: plausible,
+    ends: |_, _| None,
     decode: |bytes, options| decode(bytes, options),
 };
 

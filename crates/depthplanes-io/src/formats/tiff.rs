@@ -23,6 +23,7 @@ pub(super) const FORMAT: Format = Format {
     about: "TIFF, integers or float, first page of full size or a chosen one",
     extensions: &["tif", "tiff"],
     sniff: |bytes| [&b"II*\0"[..], b"MM\0*", b"II+\0", b"MM\0+"].iter().any(|magic| bytes.starts_with(magic)),
+    ends: |bytes, _| pages_end(bytes),
     decode,
 };
 
@@ -42,6 +43,52 @@ fn from_tiff(error: TiffError) -> Error {
 const MOST_PAGES: usize = 1000;
 
 type Reader<'a> = Decoder<Cursor<&'a [u8]>>;
+
+/// Behind everything that the pages point at, as far as the bytes lead.
+fn pages_end(bytes: &[u8]) -> Option<u64> {
+    let (is_little, is_big) = (bytes.starts_with(b"II"), matches!(bytes.get(..4)?, b"II+\0" | b"MM\0+"));
+    let number = |at: u64, length: u64| -> Option<u64> {
+        let bytes = bytes.get(usize::try_from(at).ok()?..usize::try_from(at.checked_add(length)?).ok()?)?;
+        let shift = |value: u64, byte: &u8| value << 8 | u64::from(*byte);
+        Some(if is_little { bytes.iter().rev().fold(0, shift) } else { bytes.iter().fold(0, shift) })
+    };
+    let (count_bytes, word, entry) = if is_big { (8, 8, 20) } else { (2, 4, 12) };
+    let mut page = number(if is_big { 8 } else { 4 }, word)?;
+    let mut end = 16;
+    for _ in 0..MOST_PAGES {
+        if page == 0 {
+            break;
+        }
+        let Some(entries) = number(page, count_bytes) else { return Some(end.max(page.saturating_add(count_bytes))) };
+        let next = page + count_bytes + entry * entries.min(1 << 16);
+        let Some(following) = number(next, word) else { return Some(end.max(next + word)) };
+        end = end.max(next + word);
+        // Places and lengths of strips and tiles, by their tags; each a list of numbers, in the entry if it fits there.
+        let list = |tags: [u64; 2]| -> Option<Vec<u64>> {
+            let mut entries = (0..entries.min(1 << 16)).map(|index| page + count_bytes + entry * index);
+            let at = entries.find(|&at| number(at, 2).is_some_and(|tag| tags.contains(&tag)))?;
+            let size = match number(at + 2, 2)? {
+                3 => 2,
+                4 => 4,
+                _ => 8,
+            };
+            let count = number(at + 4, word)?.min(1 << 24);
+            let value = at + 4 + word;
+            let first = if count * size <= word { value } else { number(value, word)? };
+            let last = first.saturating_add(count * size);
+            if number(last.saturating_sub(1), 1).is_none() {
+                return Some(vec![last]); // still to come
+            }
+            (0..count).map(|index| number(first + index * size, size)).collect()
+        };
+        let (places, lengths) = (list([273, 324]).unwrap_or_default(), list([279, 325]).unwrap_or_default());
+        let behind = places.iter().zip(lengths.iter().chain(std::iter::repeat(&0)));
+        end = behind.fold(end, |end, (place, length)| end.max(place.saturating_add(*length)));
+        end = lengths.iter().filter(|_| lengths.len() != places.len()).fold(end, |end, at| end.max(*at));
+        page = following;
+    }
+    Some(end)
+}
 
 fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
     let (page, note) = choose(&pages(bytes, options)?, options)?;

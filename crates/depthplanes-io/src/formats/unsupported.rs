@@ -56,10 +56,19 @@ const KNOWN: &[Kind] = &[
     (0, b"P1", "a bitmap of black and white (PBM)", SAVE),
     (0, b"P4", "a bitmap of black and white (PBM)", SAVE),
     (0, b"P7", "a PAM picture", "a depth map; save it as PGM, 16-bit PNG, NPY or PFM"),
-    (0, b"II*\0", "a TIFF picture", "this build has no TIFF reader; build with the feature `tiff`"),
-    (0, b"MM\0*", "a TIFF picture", "this build has no TIFF reader; build with the feature `tiff`"),
-    (0, b"\x76\x2f\x31\x01", "an OpenEXR picture", "this build has no EXR reader; build with the feature `exr`"),
+    (0, b"II*\0", "a TIFF picture", NO_TIFF),
+    (0, b"MM\0*", "a TIFF picture", NO_TIFF),
+    (0, b"\x76\x2f\x31\x01", "an OpenEXR picture", NO_EXR),
 ];
+
+/// What to do about files of that extension (small letters), if they are of a format that this build leaves out.
+pub fn left_out(extension: &str) -> Option<&'static str> {
+    match extension {
+        "exr" if cfg!(not(feature = "exr")) => Some(NO_EXR),
+        "tif" | "tiff" if cfg!(not(feature = "tiff")) => Some(NO_TIFF),
+        _ => None,
+    }
+}
 
 /// How texts begin, after white space, in small letters.
 const TEXTS: &[(&str, &str, &str)] = &[
@@ -71,8 +80,28 @@ const TEXTS: &[(&str, &str, &str)] = &[
     ("%yaml", "a YAML text", "a depth map; a camera file is stated with --camera"),
 ];
 
-const ACCEPTED: &str = "PNG, BMP, PGM/PPM, PFM, NPY, NPZ, TIFF, EXR, organised PCD, PCLZF, RVL and compressedDepth; \
-     for headerless samples state the size with --raw-size WIDTHxHEIGHT";
+/// The formats that this build reads, and what to do about samples that have none.
+macro_rules! accepted {
+    ($($feature:literal)*) => {
+        concat!(
+            "PNG, BMP, PGM/PPM, PFM, NPY, NPZ, ",
+            $($feature, ", ",)*
+            "organised PCD, PCLZF, RVL and compressedDepth; for headerless samples state the size with --raw-size WIDTHxHEIGHT"
+        )
+    };
+}
+
+const ACCEPTED: &str = match (cfg!(feature = "tiff"), cfg!(feature = "exr")) {
+    (true, true) => accepted!("TIFF" "EXR"),
+    (true, false) => accepted!("TIFF"),
+    (false, true) => accepted!("EXR"),
+    (false, false) => accepted!(),
+};
+
+const NO_TIFF: &str = "a depth map that this build reads; it has no TIFF reader, which the feature `tiff` adds (cargo install ... \
+     --features tiff)";
+const NO_EXR: &str = "a depth map that this build reads; OpenEXR is read by the packages, and by builds with the feature `exr` \
+     (cargo install ... --features exr)";
 
 /// The error for bytes that no format claims.
 pub(super) fn explain(bytes: &[u8]) -> Error {

@@ -3,7 +3,7 @@
 use super::destination::{Destination, destination, folder_of};
 use super::error::OutputError;
 use super::output::{Output, Report};
-use super::staged::Staged;
+use super::staged::{Staged, hidden_files_of_this_process};
 use std::collections::{BTreeSet, HashMap};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -39,10 +39,14 @@ fn write_together(files: &[(&Path, &[u8])]) -> Result<(), OutputError> {
 }
 
 /// Gives files their names, when all of them are on the disk.
-pub(super) fn commit(staged: Vec<Staged>) -> Result<(), OutputError> {
+pub(super) fn commit(mut staged: Vec<Staged>) -> Result<(), OutputError> {
     staged.iter().try_for_each(Staged::sync)?;
     let folders: BTreeSet<PathBuf> = staged.iter().filter_map(Staged::folder).collect();
-    staged.into_iter().try_for_each(Staged::commit)?;
+    let named = {
+        let mut held = hidden_files_of_this_process();
+        staged.iter_mut().try_for_each(|file| file.commit(&mut held))
+    };
+    named?;
     // The new names are on the disk when their folder is. Not every file system can do that, and the files are whole anyway.
     folders.iter().for_each(|folder| drop(fs::File::open(folder).and_then(|folder| folder.sync_all())));
     Ok(())

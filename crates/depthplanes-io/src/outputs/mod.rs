@@ -43,6 +43,7 @@ pub use overlay::overlay_png;
 pub use picture::grey16_png;
 pub use planes::{CSV_COLUMNS, document as json_document, line as json_line};
 pub use record::SCHEMA;
+pub use staged::remove_unfinished;
 pub use table::{TableFile, TableForm};
 pub use times::{Spread, Times};
 pub use tinted::{Tile, side_by_side, tinted_png};

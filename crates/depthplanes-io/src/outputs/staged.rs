@@ -1,18 +1,34 @@
 //! A file's bytes on their way to their name.
 //!
 //! Bytes go to a hidden file beside the target, which then takes the target's name in one step. Whatever fails, the
-//! hidden file is removed and what stood there before stays. A run that is killed leaves its hidden file, and the next
-//! run that writes the same target removes it.
+//! hidden file is removed and what stood there before stays. A run that is interrupted can remove its hidden files
+//! ([`remove_unfinished`]); one that is killed leaves them, and the next run that writes the same target removes them.
+//! The new file has the permissions of the one that it replaces.
 
 use super::destination::{Destination, destination, folder_of};
 use super::error::OutputError;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The hidden files of this process. Who holds it keeps files from appearing and from getting their names.
+static HIDDEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+pub(super) fn hidden_files_of_this_process() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    HIDDEN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// For a process that is about to end because it was interrupted: removes the files that are not finished. Files of one
+/// frame that are just getting their names all get them first. Nothing can be written after it: who tries waits for ever.
+pub fn remove_unfinished() {
+    let hidden = hidden_files_of_this_process();
+    hidden.iter().for_each(|file| drop(fs::remove_file(file)));
+    std::mem::forget(hidden); // stays locked
+}
 
 /// A file's bytes beside their target. Dropped before [`Staged::commit`], it leaves nothing.
 #[derive(Debug)]
@@ -62,11 +78,12 @@ impl Staged {
         self.hidden.as_ref().map(|_| folder_of(&self.target).to_path_buf())
     }
 
-    /// Gives the file its name.
-    pub(super) fn commit(mut self) -> Result<(), OutputError> {
+    /// Gives the file its name, while the hidden files of this process are held.
+    pub(super) fn commit(&mut self, held: &mut BTreeSet<PathBuf>) -> Result<(), OutputError> {
         if let Some(hidden) = &self.hidden {
             let failed = |source| OutputError::Write { path: self.target.clone(), source };
             fs::rename(hidden, &self.target).map_err(failed)?;
+            held.remove(hidden);
             self.hidden = None;
         }
         Ok(())
@@ -78,6 +95,7 @@ impl Drop for Staged {
         if let Some(hidden) = &self.hidden {
             // Nothing more can be done about a file that cannot be removed.
             let _ = fs::remove_file(hidden);
+            hidden_files_of_this_process().remove(hidden);
         }
     }
 }
@@ -91,17 +109,43 @@ fn create_beside(target: &Path) -> io::Result<(File, PathBuf)> {
         let mut name = prefix.clone();
         name.push(format!("{}-{}{SUFFIX}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
         let hidden = target.with_file_name(name);
-        let file = match OpenOptions::new().write(true).create_new(true).open(&hidden) {
+        let mut held = hidden_files_of_this_process();
+        let file = match create_like(target, &hidden) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
-            opened => opened?,
+            created => created?,
         };
+        held.insert(hidden.clone());
+        drop(held);
         // Another run may have taken it for one that was left, before the lock: then it is gone, or about to be. File
         // systems without locks have to do without.
         let is_ours = !matches!(file.try_lock(), Err(TryLockError::WouldBlock));
         if is_ours && hidden.exists() {
             return Ok((file, hidden));
         }
+        hidden_files_of_this_process().remove(&hidden);
     }
+}
+
+/// A new file that may be read and written by those who may the target; where there is none, by the process's own rule (umask).
+#[cfg(unix)]
+fn create_like(target: &Path, hidden: &Path) -> io::Result<File> {
+    use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
+    let about = fs::metadata(target).ok().filter(fs::Metadata::is_file);
+    let Some(mode) = about.map(|about| about.permissions().mode() & 0o777) else {
+        return OpenOptions::new().write(true).create_new(true).open(hidden);
+    };
+    // Never more than the target's, not even before the bytes are there; then all of them, whatever the umask.
+    let file = OpenOptions::new().write(true).create_new(true).mode(mode).open(hidden)?;
+    if file.metadata()?.permissions().mode() & 0o777 != mode {
+        // Where there are no permissions (FAT) there are none to keep.
+        let _ = file.set_permissions(fs::Permissions::from_mode(mode));
+    }
+    Ok(file)
+}
+
+#[cfg(not(unix))]
+fn create_like(_: &Path, hidden: &Path) -> io::Result<File> {
+    OpenOptions::new().write(true).create_new(true).open(hidden)
 }
 
 /// How names of hidden files end; before it stand the process and a number of its own.
@@ -138,7 +182,7 @@ fn fnv(bytes: &[u8]) -> u64 {
 fn remove_stale(folder: &Path, prefix: &OsStr) {
     /// Hidden files by folder, as this run found them first.
     static LEFT: Mutex<BTreeMap<PathBuf, Vec<OsString>>> = Mutex::new(BTreeMap::new());
-    let mut left = LEFT.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let mut left = LEFT.lock().unwrap_or_else(PoisonError::into_inner);
     let left = left.entry(folder.to_path_buf()).or_insert_with(|| hidden_files(folder));
     left.retain(|name| {
         let rest = name.as_encoded_bytes().strip_prefix(prefix.as_encoded_bytes());

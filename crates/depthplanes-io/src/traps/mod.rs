@@ -35,6 +35,7 @@ const TRAPS: &[&[Look]] = &[
         unit::median,
     ],
     &[camera::of_disparity],
+    &[camera::folds],
 ];
 
 /// The traps that a map may have fallen into.

@@ -54,7 +54,7 @@ const STEPS: usize = 40;
 const CLOSE: f64 = 1e-8;
 
 /// The widest angle from the optical axis that is undistorted: its tangent. A pinhole camera sees less than 90 degrees.
-const WIDEST: f64 = 11.43; // 85 degrees
+pub(super) const WIDEST: f64 = 11.43; // 85 degrees
 
 /// The distortion of a lens: a formula and its coefficients.
 ///
@@ -130,25 +130,28 @@ impl Distortion {
     /// What a pinhole camera would see at (x, y) of the distorted picture; `None` where the lens puts nothing: beyond 85
     /// degrees from the axis, and where the formula folds back.
     pub fn undistort(&self, at: [f64; 2]) -> Option<[f64; 2]> {
-        self.undistort_from(at, at)
-    }
-
-    /// As [`Distortion::undistort`], with a first guess near what is looked for.
-    pub(super) fn undistort_from(&self, at: [f64; 2], guess: [f64; 2]) -> Option<[f64; 2]> {
         let found = match self.model {
             DistortionModel::InverseBrownConrady => self.polynomial(at),
             DistortionModel::KannalaBrandt => self.straight(at)?,
-            DistortionModel::BrownConrady | DistortionModel::ModifiedBrownConrady => self.newton(at, guess)?,
+            DistortionModel::BrownConrady | DistortionModel::ModifiedBrownConrady => self.newton(at, at)?,
         };
-        let [x, y] = found;
-        (x.is_finite() && y.is_finite() && x.hypot(y) <= WIDEST && !self.folds(at, found)).then_some(found)
+        self.shows(found, at).then_some(found)
     }
 
     /// Whether the lens puts the ray (x, y) at that place of the distorted picture, and not another one nearer the axis.
     pub(super) fn shows(&self, ray: [f64; 2], distorted: [f64; 2]) -> bool {
-        let r = ray[0].hypot(ray[1]);
-        let grows = self.model != DistortionModel::KannalaBrandt || self.radius(r.atan())[1] > 0.0;
-        r <= WIDEST && grows && !self.folds(distorted, ray)
+        self.is_in_sight(ray) && !self.folds(self.place_in_formula(ray, distorted))
+    }
+
+    /// Whether a ray is near enough to the axis, and to where the formula means something.
+    pub(super) fn is_in_sight(&self, [x, y]: [f64; 2]) -> bool {
+        let r = x.hypot(y);
+        r <= WIDEST && (self.model != DistortionModel::KannalaBrandt || self.radius(r.atan())[1] > 0.0)
+    }
+
+    /// Which of the two is what [`Distortion::forward`] is given.
+    pub(super) fn place_in_formula(&self, ray: [f64; 2], distorted: [f64; 2]) -> [f64; 2] {
+        if self.model == DistortionModel::InverseBrownConrady { distorted } else { ray }
     }
 
     /// OpenCV's formula (calib3d): radial, tangential and thin prism terms.
@@ -172,7 +175,7 @@ impl Distortion {
     }
 
     /// The distorted radius of an angle from the axis, and how fast it grows.
-    fn radius(&self, angle: f64) -> [f64; 2] {
+    pub(super) fn radius(&self, angle: f64) -> [f64; 2] {
         let [k1, k2, k3, k4, ..] = self.coefficients;
         let t2 = angle * angle;
         [
@@ -212,7 +215,7 @@ impl Distortion {
     }
 
     /// The formula that Newton's method turns round.
-    fn forward(&self, at: [f64; 2]) -> [f64; 2] {
+    pub(super) fn forward(&self, at: [f64; 2]) -> [f64; 2] {
         match self.model {
             DistortionModel::ModifiedBrownConrady => self.modified(at),
             _ => self.polynomial(at),
@@ -220,7 +223,7 @@ impl Distortion {
     }
 
     /// The derivative of [`Distortion::forward`] by differences, row by row.
-    fn slope(&self, [x, y]: [f64; 2]) -> [[f64; 2]; 2] {
+    pub(super) fn slope(&self, [x, y]: [f64; 2]) -> [[f64; 2]; 2] {
         const H: f64 = 1e-6;
         let by = |dx: f64, dy: f64| {
             let [ahead, behind] = [self.forward([x + dx, y + dy]), self.forward([x - dx, y - dy])];
@@ -231,7 +234,7 @@ impl Distortion {
     }
 
     /// Where the formula gives `goal`, by Newton's method from `start`; none if it does not get there.
-    fn newton(&self, goal: [f64; 2], start: [f64; 2]) -> Option<[f64; 2]> {
+    pub(super) fn newton(&self, goal: [f64; 2], start: [f64; 2]) -> Option<[f64; 2]> {
         let mut at = start;
         for _ in 0..STEPS {
             let given = self.forward(at);
@@ -255,15 +258,17 @@ impl Distortion {
     }
 
     /// Whether the formula has folded back on the way out from the axis to there: a second ray has the same pixel.
-    fn folds(&self, distorted: [f64; 2], straight: [f64; 2]) -> bool {
+    pub(super) fn folds(&self, [x, y]: [f64; 2]) -> bool {
         if self.model == DistortionModel::KannalaBrandt {
             return false; // looked at with the angle
         }
-        let [x, y] = if self.model == DistortionModel::InverseBrownConrady { distorted } else { straight };
-        (1..=8).map(|part| f64::from(part) / 8.0).any(|part| {
-            let [[a, b], [c, d]] = self.slope([x * part, y * part]);
-            a * d - b * c <= 0.0 || a + d <= 0.0
-        })
+        (1..=8).map(|part| f64::from(part) / 8.0).any(|part| self.folds_at([x * part, y * part]))
+    }
+
+    /// Whether the formula goes back there, or comes out on the other side of the axis.
+    pub(super) fn folds_at(&self, at: [f64; 2]) -> bool {
+        let ([[a, b], [c, d]], [x, y]) = (self.slope(at), self.forward(at));
+        a * d - b * c <= 0.0 || a + d <= 0.0 || x * at[0] + y * at[1] < 0.0
     }
 }
 

@@ -4,5 +4,6 @@
 mod carry;
 pub(crate) mod distortion;
 mod rectify;
+mod table;
 
 pub(crate) use carry::Lens;

@@ -8,6 +8,7 @@
 //! lengths are smaller.
 
 use super::distortion::Distortion;
+use super::table::{Table, is_within};
 use crate::camera::{Intrinsics, ValueKind};
 use crate::error::Result;
 use crate::limits::{MAX_PIXELS, MAX_SIDE};
@@ -31,8 +32,18 @@ const SMOOTH: f64 = 0.05;
 /// alone a room in eighths of a pixel has 18 planes for 3.)
 const STEPS: f64 = 2.0;
 
+/// How far beyond the centres of the map's outermost pixels a place may lie, pixels: what rounding makes of a place on them.
+/// Farther out no four pixels surround it, and the nearest one alone would bend a slanted plane along the border of the map.
+const BEYOND: f64 = 0.01;
+
 /// No pixel.
 pub(super) const NONE: u32 = u32::MAX;
+
+/// The pixel nearest to a place, which is not below -0.5; the system's own rounding takes several times as long.
+#[inline]
+fn nearest(place: f32) -> usize {
+    (place + 0.5) as usize
+}
 
 /// The table for maps of one size.
 #[derive(Debug)]
@@ -66,9 +77,10 @@ impl Rectifier {
         Rectifier { width, height, camera: *camera, distortion: *distortion, pinhole, size, places, back }
     }
 
-    /// The pinhole picture of a map, 0 where it shows nothing. A value is that of the nearest pixel, or, where four valid pixels
-    /// surround the place and differ by more than [`STEPS`] but without an edge, between theirs by inverse depth, which is
-    /// affine on planes.
+    /// The pinhole picture of a map, 0 where it shows nothing. A value is that of the nearest pixel, or, where the pixels around
+    /// the place differ by more than [`STEPS`] but without an edge, between theirs by inverse depth, which is affine on
+    /// planes. Beside missing pixels the plane of the pixel's other neighbours is carried on: the nearest value alone would bend
+    /// a slanted plane along the gap.
     pub(super) fn resample<T: Pixel>(
         &self,
         map: &DepthView<'_, T>,
@@ -86,7 +98,7 @@ impl Rectifier {
     /// An image of the map as the picture shows it, nearest pixels; 0 where it shows nothing.
     pub(super) fn nearest(&self, image: &DepthView<'_, u16>) -> Vec<u16> {
         let place = |&[u, v]: &[f32; 2]| {
-            let near = |place: f32, side: usize| (place.round().max(0.0) as usize).min(side - 1);
+            let near = |place: f32, side: usize| nearest(place).min(side - 1);
             if u.is_nan() { 0 } else { image.row(near(v, image.height()))[near(u, image.width())] }
         };
         self.places.iter().map(place).collect()
@@ -115,30 +127,41 @@ impl<T: Pixel> Values<T> {
             return T::ZERO;
         }
         let (width, height) = (map.width(), map.height());
-        let near = |place: f32, side: usize| (place.round().max(0.0) as usize).min(side - 1);
-        let nearest = map.row(near(v, height))[near(u, width)];
+        let (column, row) = (nearest(u).min(width - 1), nearest(v).min(height - 1));
+        let nearest = map.row(row)[column];
         if !self.validity.holds(nearest) {
             return T::ZERO;
         }
-        let (left, top) = (u.floor(), v.floor());
-        if left < 0.0 || top < 0.0 || left as usize + 1 >= width || top as usize + 1 >= height {
-            return nearest;
-        }
-        let (column, row) = (left as usize, top as usize);
-        let (upper, lower) = (&map.row(row)[column..column + 2], &map.row(row + 1)[column..column + 2]);
-        let four = [upper[0], upper[1], lower[0], lower[1]];
-        if !four.iter().all(|&value| self.validity.holds(value)) {
-            return nearest;
-        }
-        let q = four.map(|value| self.turned(value.into()));
-        let (least, most) = q.iter().fold((f64::MAX, f64::MIN), |(a, b), &q| (a.min(q), b.max(q)));
+        let (du, dv) = (f64::from(u) - column as f64, f64::from(v) - row as f64);
+        let q = self.turned(nearest.into());
+        // The neighbour towards the place, or, where there is none, the one on the other side: the plane goes on.
+        let side = |ahead: f64, neighbour: &dyn Fn(isize) -> Option<f64>| {
+            let ahead = if ahead < 0.0 { -1 } else { 1 };
+            neighbour(ahead).map(|q| (ahead, q)).or_else(|| neighbour(-ahead).map(|q| (-ahead, q)))
+        };
+        let value = |column: Option<usize>, row: Option<usize>| {
+            let value = *map.row(row.filter(|&row| row < height)?).get(column?)?;
+            self.validity.holds(value).then(|| self.turned(value.into()))
+        };
+        let along = side(du, &|step| value(column.checked_add_signed(step), Some(row)));
+        let across = side(dv, &|step| value(Some(column), row.checked_add_signed(step)));
+        let corner = along
+            .zip(across)
+            .and_then(|((du, _), (dv, _))| value(column.checked_add_signed(du), row.checked_add_signed(dv)));
+        let known = [Some(q), along.map(|(_, q)| q), across.map(|(_, q)| q), corner];
+        let (least, most) = known.into_iter().flatten().fold((f64::MAX, f64::MIN), |(a, b), q| (a.min(q), b.max(q)));
         let is_edge = most - least > SMOOTH * least.abs().min(most.abs());
-        if is_edge || most - least <= STEPS * self.rounding.step(q[0]) {
+        if is_edge || most - least <= STEPS * self.rounding.step(q) {
             return nearest;
         }
-        let (x, y) = (f64::from(u - left), f64::from(v - top));
-        let q = (q[0] * (1.0 - x) + q[1] * x) * (1.0 - y) + (q[2] * (1.0 - x) + q[3] * x) * y;
-        let value = T::from_f64(self.turned(q));
+        let slope = |side: Option<(isize, f64)>| side.map_or(0.0, |(step, other)| (other - q) / step as f64);
+        let (a, b) = (slope(along), slope(across));
+        // Of four pixels, what the fourth adds to the plane of three.
+        let twist = match (along, across, corner) {
+            (Some((u, along)), Some((v, across)), Some(corner)) => (corner + q - along - across) / (u * v) as f64,
+            _ => 0.0,
+        };
+        let value = T::from_f64(self.turned(q + a * du + b * dv + twist * du * dv));
         if self.validity.holds(value) { value } else { nearest }
     }
 
@@ -154,18 +177,13 @@ impl<T: Pixel> Values<T> {
 
 /// The undistorted normalised coordinates of each pixel of the map; NaN where the lens puts nothing, and beyond [`WIDEST`].
 fn rays([width, height]: [usize; 2], camera: &Intrinsics, distortion: &Distortion) -> Vec<[f32; 2]> {
-    // The place of the pixel before, and its ray: that of the next one is as far from it.
-    let mut before: Option<[[f64; 2]; 2]> = None;
-    let mut ray = |at: usize| {
+    let mut table = Table::of(distortion);
+    let ray = |at: usize| {
         let [x, y, _] = camera.ray((at % width) as f64, (at / width) as f64);
-        let near = before.filter(|_| !at.is_multiple_of(width));
-        let guess = near.map(|[place, ray]| [ray[0] + x - place[0], ray[1] + y - place[1]]);
-        let found = guess.and_then(|guess| distortion.undistort_from([x, y], guess));
-        let straight = found.or_else(|| distortion.undistort([x, y])).filter(|[x, y]| x.hypot(*y) <= WIDEST);
-        before = straight.map(|ray| [[x, y], ray]);
+        let straight = table.undistort([x, y]).filter(|&ray| is_within(ray, WIDEST));
         straight.map_or([f32::NAN; 2], |ray| ray.map(|side| side as f32))
     };
-    (0..width * height).map(&mut ray).collect()
+    (0..width * height).map(ray).collect()
 }
 
 /// Smallest and largest x and y of the rays; the axis alone if there is none.
@@ -203,16 +221,17 @@ fn places(
     distortion: &Distortion,
     [width, height]: [usize; 2],
 ) -> Vec<[f32; 2]> {
-    let is_inside = |place: f64, side: usize| place >= -0.5 && place < side as f64 - 0.5;
+    let is_inside = |place: f64, side: usize| place >= -BEYOND && place <= side as f64 - 1.0 + BEYOND;
+    let mut table = Table::of(distortion);
     let place = |at: usize| {
         let [x, y, _] = pinhole.ray((at % columns) as f64, (at / columns) as f64);
-        let distorted = distortion.distort([x, y]);
+        // Beyond the fold of a formula other rays have the same pixels.
+        let Some(distorted) = table.distort([x, y]) else { return [f32::NAN; 2] };
         let [u, v] = [camera.fx * distorted[0] + camera.cx, camera.fy * distorted[1] + camera.cy];
         if !is_inside(u, width) || !is_inside(v, height) {
             return [f32::NAN; 2];
         }
-        // Beyond the fold of a formula other rays have the same pixels.
-        if distortion.shows([x, y], distorted) { [u as f32, v as f32] } else { [f32::NAN; 2] }
+        [u as f32, v as f32]
     };
     (0..columns * rows).map(place).collect()
 }
@@ -228,15 +247,14 @@ fn back(
 ) -> Vec<u32> {
     let shows = |at: usize| {
         let [u, v] = places[at];
-        (!u.is_nan()).then(|| v.round().max(0.0) as usize * width + u.round().max(0.0) as usize)
+        (!u.is_nan()).then(|| nearest(v) * width + nearest(u))
     };
     let find = |(pixel, ray): (usize, &[f32; 2])| {
         if ray[0].is_nan() {
             return NONE;
         }
         let [u, v] = pinhole.project([f64::from(ray[0]), f64::from(ray[1]), 1.0]);
-        let near = |place: f64, side: usize| (place.round().max(0.0) as usize).min(side - 1);
-        let (column, row) = (near(u, columns), near(v, rows));
+        let (column, row) = (nearest(u as f32).min(columns - 1), nearest(v as f32).min(rows - 1));
         let around = [0, -1, 1].into_iter().flat_map(|dv| [0, -1, 1].map(|du| (du, dv)));
         let around = around.filter_map(|(du, dv): (isize, isize)| {
             let (u, v) = (column.checked_add_signed(du)?, row.checked_add_signed(dv)?);
