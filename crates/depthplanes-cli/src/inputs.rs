@@ -110,7 +110,12 @@ fn maps_in(folder: &Path, recursive: bool) -> Outcome<Vec<Input>> {
     if maps.is_empty() {
         let known = FORMATS.iter().flat_map(|format| format.extensions);
         let known: Vec<String> = known.map(|extension| format!("*.{extension}")).collect();
-        let message = format!("{}: no map in this folder; looked for {}", folder.display(), known.join(", "));
+        let mut message = format!("{}: no map in this folder; looked for {}", folder.display(), known.join(", "));
+        if let Some(result) = files_in(folder)?.iter().find(|path| is_ours(path)) {
+            let ours: Vec<String> = OUTPUTS.iter().map(|output| format!("*.{}", output.file)).collect();
+            let (result, ours) = (file_name(result), ours.join(", "));
+            message += &format!("; files such as {result} are results of this program and skipped: {ours}");
+        }
         return Err(Failure::request(message));
     }
     Ok(in_natural_order(maps, folder))

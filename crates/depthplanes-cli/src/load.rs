@@ -9,6 +9,7 @@ use depthplanes_io::camera_file::read_camera;
 use depthplanes_io::encoding::Stereo;
 use depthplanes_io::formats::{DecodeOptions, Limits};
 use depthplanes_io::{Frame, Pixels, Provenance, ReadOptions, memory};
+use std::path::Path;
 
 /// The flags as the reading library takes them; reads the camera file.
 ///
@@ -35,6 +36,7 @@ pub(crate) fn options(reading: &Reading) -> Outcome<ReadOptions> {
         ..ReadOptions::default()
     };
     if let Some(path) = &reading.camera {
+        refuse_numbers(path)?;
         options = options.camera(&read_camera(path)?);
     }
     if let Some([fx, fy, cx, cy]) = reading.intrinsics {
@@ -47,6 +49,19 @@ pub(crate) fn options(reading: &Reading) -> Outcome<ReadOptions> {
     }
     options.stereo = stereo(reading, &options)?;
     Ok(options)
+}
+
+/// Refuses the numbers of a camera in the place of its file.
+fn refuse_numbers(path: &Path) -> Outcome {
+    let text = path.to_string_lossy();
+    let parts: Vec<&str> = text.split(',').collect();
+    let are_numbers = parts.len() == 4 && parts.iter().all(|part| part.trim().parse::<f64>().is_ok());
+    if are_numbers && !path.exists() {
+        return Err(Failure::request(format!(
+            "--camera takes a file; for the numbers themselves: --intrinsics={text}"
+        )));
+    }
+    Ok(())
 }
 
 /// The rig: flags go before the camera file, and the camera's own focal length is the rig's unless

@@ -5,7 +5,7 @@
 
 use depthplanes::{Detection, Detector, Planar, Sensor, ValueKind};
 
-use crate::frame::Frame;
+use crate::frame::{Frame, Pixels};
 use crate::outputs::Report;
 use crate::ray_distance;
 use crate::traps::{Probe, is_small};
@@ -45,7 +45,7 @@ impl Score {
 /// A reading under which far more pixels lie on planes.
 pub(super) fn better(report: &Report<'_>) -> Option<String> {
     let (frame, as_read) = (report.frame, Score::of(report.detection));
-    let explained = ["label image", "try --swap-bytes", "try --preset kinect1-raw"];
+    let explained = ["label image", "try --swap-bytes", "try --preset kinect1-raw", "resized with interpolation"];
     let is_explained = |warning: &String| explained.iter().any(|words| warning.contains(words));
     if frame.warnings.iter().any(is_explained)
         || report.method.name != "planar"
@@ -76,8 +76,14 @@ pub(super) fn better(report: &Report<'_>) -> Option<String> {
                     "they are inverse depth, large values near: try --encoding inverse-depth or --disparity",
                 )),
                 (Some(score), _) => Some(told(score, "they are distances along the rays: try --ray-distance")),
-                _ => None,
+                _ => turned_round(frame, as_read).map(|(score, whole)| {
+                    told(score, &format!("they are {whole} less the depth: turn them round before, to {whole} - value"))
+                }),
             }
+        }
+        ValueKind::Disparity | ValueKind::InverseDepth { .. } if is_assumed_disparity(frame) => {
+            let score = with(frame, ValueKind::Depth { metres: 1e-3 })?;
+            score.beats(&as_read).then(|| told(score, "they are depth: try --encoding millimetre"))
         }
         ValueKind::Disparity if frame.format == "pfm" && frame.provenance.is_guess() => {
             let score = with(frame, ValueKind::Depth { metres: 1.0 })?;
@@ -85,6 +91,29 @@ pub(super) fn better(report: &Report<'_>) -> Option<String> {
         }
         _ => None,
     }
+}
+
+/// What programs take depth from so that near is bright: 10 m, and the largest of 16 bits.
+const WHOLES: [u16; 2] = [10_000, u16::MAX];
+
+/// A number less the values, under which far more pixels lie on planes, and that number.
+fn turned_round(frame: &Frame, as_read: Score) -> Option<(Score, u16)> {
+    let Pixels::U16(values) = &frame.pixels else { return None };
+    let largest = *values.iter().max()?;
+    if !frame.provenance.is_guess() || frame.missing.is_some() {
+        return None;
+    }
+    WHOLES.into_iter().filter(|whole| *whole > largest).find_map(|whole| {
+        let turned = values.iter().map(|&value| if value == 0 { 0 } else { whole - value }).collect();
+        let turned = Frame { pixels: Pixels::U16(turned), ..frame.clone() };
+        Some((score(&turned, frame.sensor)?, whole)).filter(|(score, _)| score.beats(&as_read))
+    })
+}
+
+/// Whether 16 bits are read as disparity because of a preset, a rig or a camera file.
+fn is_assumed_disparity(frame: &Frame) -> bool {
+    let is_16_bits = matches!(frame.pixels, Pixels::U16(_));
+    is_16_bits && frame.provenance.encoding != "stated" && ["kitti", "disparity"].contains(&frame.encoding)
 }
 
 /// How much larger values have to be in the lower half of a picture to look like disparity or inverse depth: what is near is
