@@ -626,16 +626,6 @@ fn a_photograph_of_16_bits_is_no_surface_with_and_without_a_camera() {
 }
 
 #[test]
-fn depth_that_was_turned_round_is_noticed() {
-    for (whole, units) in [(10_000.0, 1000.0), (10_000.0, 1200.0), (65_535.0, 8000.0)] {
-        let frame = read(&counts(|_, depth| whole - units * depth), &camera());
-        noted("turned round", &frame, &[&format!("{whole} less the depth"), "turn them round"]);
-        let holes = counts(|at, depth| if at % 9 == 0 { 0.0 } else { whole - units * depth });
-        noted("with holes", &read(&holes, &camera()), &[&format!("{whole} less the depth")]);
-    }
-}
-
-#[test]
 fn a_missing_value_that_was_stated_is_not_asked_for_again() {
     for (share, value) in [(60, 3500.0), (80, 65_535.0), (55, 1.0)] {
         let bytes = counts(|at, depth| if at % SIZE[0] * 100 < share * SIZE[0] { value } else { 1000.0 * depth });

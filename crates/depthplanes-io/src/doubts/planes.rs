@@ -58,12 +58,16 @@ const SCATTER: f64 = 0.15;
 
 /// A plane whose points scatter as those of no surface do.
 pub(super) fn scattered(report: &Report<'_>) -> Option<String> {
-    let mut detector = Detector::default().sensor(nominal(report)?);
+    let sensor = nominal(report)?;
+    let mut detector;
     let again = match report.is_metric() {
         true => None,
         // Planes bend in the map's values: only those that scatter there are worth the time.
         false if !report.detection.planes.iter().any(|plane| scatters_in_values(plane)) => return None,
-        false => Some(detector.detect(report.frame.view().ok()?).ok()?),
+        false => {
+            detector = Detector::default().sensor(sensor);
+            Some(detector.detect(report.frame.view().ok()?).ok()?)
+        }
     };
     let planes = again.unwrap_or(report.detection).planes.iter().filter(|plane| plane.share_of_valid > 0.1);
     let found = planes.filter_map(|plane| Some((plane.label, plane.metric.as_ref()?)));

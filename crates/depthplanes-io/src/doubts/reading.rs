@@ -76,14 +76,12 @@ pub(super) fn better(report: &Report<'_>) -> Option<String> {
                     "they are inverse depth, large values near: try --encoding inverse-depth or --disparity",
                 )),
                 (Some(score), _) => Some(told(score, "they are distances along the rays: try --ray-distance")),
-                _ => turned_round(frame, as_read).map(|(score, whole)| {
-                    told(score, &format!("they are {whole} less the depth: turn them round before, to {whole} - value"))
-                }),
+                _ => None,
             }
         }
         ValueKind::Disparity | ValueKind::InverseDepth { .. } if is_assumed_disparity(frame) => {
             let score = with(frame, ValueKind::Depth { metres: 1e-3 })?;
-            score.beats(&as_read).then(|| told(score, "they are depth: try --encoding millimetre"))
+            score.is_whole_beside(&as_read).then(|| told(score, "they are depth: try --encoding millimetre"))
         }
         ValueKind::Disparity if frame.format == "pfm" && frame.provenance.is_guess() => {
             let score = with(frame, ValueKind::Depth { metres: 1.0 })?;
@@ -91,23 +89,6 @@ pub(super) fn better(report: &Report<'_>) -> Option<String> {
         }
         _ => None,
     }
-}
-
-/// What programs take depth from so that near is bright: 10 m, and the largest of 16 bits.
-const WHOLES: [u16; 2] = [10_000, u16::MAX];
-
-/// A number less the values, under which far more pixels lie on planes, and that number.
-fn turned_round(frame: &Frame, as_read: Score) -> Option<(Score, u16)> {
-    let Pixels::U16(values) = &frame.pixels else { return None };
-    let largest = *values.iter().max()?;
-    if !frame.provenance.is_guess() || frame.missing.is_some() {
-        return None;
-    }
-    WHOLES.into_iter().filter(|whole| *whole > largest).find_map(|whole| {
-        let turned = values.iter().map(|&value| if value == 0 { 0 } else { whole - value }).collect();
-        let turned = Frame { pixels: Pixels::U16(turned), ..frame.clone() };
-        Some((score(&turned, frame.sensor)?, whole)).filter(|(score, _)| score.beats(&as_read))
-    })
 }
 
 /// Whether 16 bits are read as disparity because of a preset, a rig or a camera file.

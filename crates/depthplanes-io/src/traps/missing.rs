@@ -110,7 +110,13 @@ pub(super) fn mostly(frame: &Frame, probe: &Probe) -> Option<String> {
     if share <= most || share - known_share(frame) <= most {
         return None;
     }
-    Some(format!("{} of the pixels are missing: check --missing, --valid-range and --encoding", percent(share)))
+    let is_apart = probe.valid.len() >= FEW && 5 * probe.pairs.len() < probe.valid.len();
+    let advice = if is_apart {
+        "the measured ones stand apart, and areas are those of the measured pixels"
+    } else {
+        "check --missing, --valid-range and --encoding"
+    };
+    Some(format!("{} of the pixels are missing: {advice}", percent(share)))
 }
 
 /// Share of the pixels that have the value for "missing" that is known of the map.
