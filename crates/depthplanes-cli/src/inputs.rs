@@ -114,6 +114,11 @@ fn maps_in(folder: &Path, recursive: bool) -> Outcome<Vec<Input>> {
         if let Some((path, accepted)) = of_another_build(folder) {
             message += &format!("; {} is there; accepted: {accepted}", file_name(&path));
         }
+        if let Some(result) = files_in(folder)?.iter().find(|path| is_ours(path)) {
+            let ours: Vec<String> = OUTPUTS.iter().map(|output| format!("*.{}", output.file)).collect();
+            let (result, ours) = (file_name(result), ours.join(", "));
+            message += &format!("; files such as {result} are results of this program and skipped: {ours}");
+        }
         return Err(Failure::request(message));
     }
     Ok(in_natural_order(maps, folder))

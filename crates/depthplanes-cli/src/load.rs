@@ -38,6 +38,7 @@ pub(crate) fn options(reading: &Reading) -> Outcome<ReadOptions> {
         ..ReadOptions::default()
     };
     if let Some(path) = &reading.camera {
+        refuse_numbers(path)?;
         options = options.camera(&patiently(path.as_ref(), || read_camera(path))?);
     }
     if let Some([fx, fy, cx, cy]) = reading.intrinsics {
@@ -58,6 +59,19 @@ pub(crate) fn options(reading: &Reading) -> Outcome<ReadOptions> {
 /// What is wrong with the file.
 pub(crate) fn noise_table(path: Option<&Path>) -> Outcome<Option<NoiseTable>> {
     Ok(path.map(|path| patiently(path, || read_noise_table(path))).transpose()?)
+}
+
+/// Refuses the numbers of a camera in the place of its file.
+fn refuse_numbers(path: &Path) -> Outcome {
+    let text = path.to_string_lossy();
+    let parts: Vec<&str> = text.split(',').collect();
+    let are_numbers = parts.len() == 4 && parts.iter().all(|part| part.trim().parse::<f64>().is_ok());
+    if are_numbers && !path.exists() {
+        return Err(Failure::request(format!(
+            "--camera takes a file; for the numbers themselves: --intrinsics={text}"
+        )));
+    }
+    Ok(())
 }
 
 /// The rig: flags go before the camera file, and the camera's own focal length is the rig's unless

@@ -19,9 +19,91 @@ fn a_file_in_the_place_of_a_command_and_flags_of_other_programs_lead_to_what_to_
         (&["inspect", "--input", "map.pgm"], "depthplanes detect FILE"),
         (&["inspect", "map.pgm", "--width", "32"], "--raw-size WxH"),
         (&["detekt", "map.pgm"], "detect"),
+        (&["detect", "map.pgm", "--max-depth", "5"], "--valid-range LO,HI"),
+        (&["detect", "map.pgm", "--min-depth=0.3"], "--valid-range LO,HI"),
+        (&["detect", "map.pgm", "--threshold", "0.01"], "--noise METRES"),
+        (&["detect", "map.pgm", "--max-planes", "5"], "--rows N"),
+        (&["detect", "map.pgm", "--num-planes", "5"], "--rows N"),
+        (&["detect", "map.pgm", "--ply", "a.ply"], "--cloud FILE.ply"),
+        (&["detect", "map.pgm", "--csv", "a.csv"], "--planes FILE.csv"),
+        (&["detect", "map.pgm", "--format", "png"], "--encoding"),
+        (&["detect", "map.pgm", "--iterations", "100"], "--method ransac"),
+        (&["detect", "map.pgm", "--units", "mm"], "--scale"),
+        (&["detect", "map.pgm", "--fov", "60"], "--intrinsics FX,FY,CX,CY"),
+        (&["detect", "map.pgm", "--show"], "--overlay FILE.png"),
+        (&["detect", "map.pgm", "--quiet"], "2>/dev/null"),
+        (&["detect", "map.pgm", "--encoding", "cm"], "--scale 100"),
+        (&["detect", "map.pgm", "--encoding", "Feet"], "--scale 3.28"),
+        (&["detect", "map.pgm", "--encoding", "parsec"], "depthplanes encodings"),
+        (&["detect", "map.pgm", "--preset", "kinect"], "--preset kinect1 (Kinect v1, Xtion) or kinect2"),
+        (&["detect", "map.pgm", "--preset", "tum-freiburg1"], "tum-fr1, tum-fr2 or tum-fr3"),
+        (&["detect", "map.pgm", "--preset", "d435"], "--preset realsense-d4xx"),
+        (&["detect", "map.pgm", "--preset", "L515"], "--scale 4000"),
+        (&["detect", "map.pgm", "--preset", "oak"], "--camera"),
+        (&["inspect", "map.pgm", "--preset", "some-camera"], "depthplanes presets"),
+        (&["detect", "map.pgm", "--out-dir", "out", "--only", "ply"], "--only cloud,mesh"),
     ] {
         let told = bench.run(words).fails(2);
         assert!(told.contains("tip:") && told.contains(tip), "{words:?}: {told}");
+        assert!(!told.contains("as a value") && told.matches("tip:").count() == 1, "{words:?}: {told}");
+    }
+}
+
+#[test]
+fn a_flag_that_nobody_knows_is_not_taken_for_a_file() {
+    let bench = Bench::with_map("unknown_flag");
+    for flag in ["--nonsense-of-mine", "--qqq", "--xyzzy=3"] {
+        let told = bench.run(&["detect", "map.pgm", flag]).fails(2);
+        assert!(told.contains("unexpected argument") && !told.contains("as a value"), "{told}");
+    }
+}
+
+#[test]
+fn numbers_of_a_camera_in_other_words_lead_to_intrinsics() {
+    let bench = Bench::with_map("numbers");
+    for numbers in ["535,539,320,247", "10, 10, 15.5, 11.5", "1e1,1e1,15.5,11.5"] {
+        let told = bench.run(&["detect", "map.pgm", "--camera", numbers]).fails(2);
+        assert!(told.contains(&format!("--intrinsics={numbers}")), "{told}");
+    }
+    let told = bench.run(&["detect", "map.pgm", "--intrinsics", "518", "519", "325.5", "253.5"]).fails(2);
+    assert!(told.contains("commas between and no blanks"), "{told}");
+    for unit in ["millimeter", "millimeters", "millimetres", "mm"] {
+        bench.run(&["detect", "map.pgm", "--encoding", unit]).ok();
+    }
+    for unit in ["meters", "metres", "m"] {
+        let told = bench.run(&["inspect", "map.pgm", "--encoding", unit]).ok();
+        assert!(told.contains("metre"), "{told}");
+    }
+}
+
+#[test]
+fn a_folder_of_results_is_said_to_have_no_map() {
+    let bench = Bench::with_map("results_alone");
+    bench.run(&["detect", "map.pgm", "--out-dir", "res"]).ok();
+    let told = bench.run(&["detect", "res"]).fails(2);
+    assert!(told.contains("no map in this folder") && told.contains("results of this program"), "{told}");
+    assert!(told.contains("*.labels.png") && told.contains("*.overlay.png"), "{told}");
+}
+
+#[cfg(unix)]
+#[test]
+fn files_are_written_though_nobody_reads_the_summary() {
+    let bench = Bench::with_map("summary_unread");
+    let program = env!("CARGO_BIN_EXE_depthplanes");
+    let map = std::fs::read(bench.folder.join("map.pgm")).unwrap();
+    std::fs::create_dir(bench.folder.join("maps")).unwrap();
+    for at in 0..12 {
+        bench.write(&format!("maps/{at}.pgm"), &map);
+    }
+    for (flags, count) in [("--out-dir out --only labels", 12), ("--out-dir both --only labels,planes", 24)] {
+        let script = format!("'{program}' detect maps {flags} --table all.csv | head -n 1");
+        let ran = bench.command_of("bash").args(["-c", &script]).output().unwrap();
+        assert!(ran.status.success() && ran.stderr.is_empty(), "{ran:?}");
+        let folder = flags.split(' ').nth(1).unwrap();
+        assert_eq!(std::fs::read_dir(bench.folder.join(folder)).unwrap().count(), count);
+        let table = std::fs::read_to_string(bench.folder.join("all.csv")).unwrap();
+        assert!((0..12).all(|at| table.contains(&format!("{at}.pgm"))), "{table}");
+        std::fs::remove_file(bench.folder.join("all.csv")).unwrap();
     }
 }
 

@@ -46,7 +46,8 @@ pub(crate) fn choose(
         };
         let is_doubtful = disparity && ["kitti", "opencv"].contains(&encoding.name);
         let note = format!(
-            "disparity of 16 bits is taken to be in {} (`{}`), since {why}; state --encoding or --scale if it is not",
+            "disparity of 16 bits is taken to be in {} (`{}`), since {why}; state --encoding or --scale if it is not, \
+             --encoding millimetre if it is depth",
             encoding.unit, encoding.name
         );
         return Ok(Choice { encoding, why, note: is_doubtful.then_some(note) });

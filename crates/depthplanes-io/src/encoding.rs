@@ -55,7 +55,7 @@ pub struct Encoding {
 
 const DEPTH: Encoding = Encoding {
     name: "millimetre",
-    aliases: &["mm", "openni"],
+    aliases: &["mm", "millimetres", "millimeter", "millimeters", "openni"],
     about: "depth in millimetres: OpenNI, ROS 16UC1, Kinect v2, Azure Kinect, 7-Scenes",
     unit: "mm",
     scale: "map units per metre, 1000",
@@ -85,7 +85,7 @@ pub const ENCODINGS: &[Encoding] = &[
     DEPTH,
     Encoding {
         name: "metre",
-        aliases: &["m", "meter"],
+        aliases: &["m", "metres", "meter", "meters"],
         about: "depth in metres: ROS 32FC1, most files of floats",
         unit: "m",
         scale: "map units per metre, 1",

@@ -159,6 +159,39 @@ fn scaled(camera: &Intrinsics, from: Size, to: Size) -> Option<Intrinsics> {
     })
 }
 
+/// What to do about the camera of a picture that the map is a crop of.
+const OF_CROP: &str = "if the map is a crop of that picture, subtract the crop's left column from cx and its top row from cy in --intrinsics";
+
+/// The camera for maps of which every n-th row or column was kept; none if the sides are no such shares.
+fn thinned(camera: &Intrinsics, from: Size, map: Size) -> Option<Intrinsics> {
+    let every = |from: usize, to: usize| (1..=8).find(|n| to > 0 && from / n == to);
+    let (x, y) = (every(from.0, map.0)?, every(from.1, map.1)?);
+    let centre = |c: f64, n: usize| (c + 0.5) / n as f64 - 0.5;
+    (x != y).then(|| Intrinsics {
+        fx: camera.fx / x as f64,
+        fy: camera.fy / y as f64,
+        cx: centre(camera.cx, x),
+        cy: centre(camera.cy, y),
+    })
+}
+
+/// What to do about the camera of a picture of another shape.
+fn of_other_shape(camera: &Intrinsics, from: Size, map: Size) -> String {
+    match thinned(camera, from, map) {
+        Some(thinned) => format!("if rows or columns were left out, give {}; {OF_CROP}", flag(&thinned)),
+        None => OF_CROP.into(),
+    }
+}
+
+/// The cameras of the picture turned clockwise and counter-clockwise, if the map has its size.
+fn turned(camera: &Intrinsics, (width, height): Size, map: Size) -> Option<[Intrinsics; 2]> {
+    let Intrinsics { fx, fy, cx, cy } = *camera;
+    let (right, bottom) = (width as f64 - 1.0, height as f64 - 1.0);
+    let clockwise = Intrinsics { fx: fy, fy: fx, cx: bottom - cy, cy: cx };
+    let other = Intrinsics { fx: fy, fy: fx, cx: cy, cy: right - cx };
+    Some([scaled(&clockwise, (height, width), map)?, scaled(&other, (height, width), map)?])
+}
+
 /// The flag for a camera, ready to paste.
 fn flag(camera: &Intrinsics) -> String {
     let round = |x: f64| (x * 1e4).round() / 1e4;
@@ -170,18 +203,22 @@ fn other_size(camera: &Intrinsics, (width, height): Size, map: Size) -> Error {
     let (w, h) = map;
     let accepted = match scaled(camera, (width, height), map) {
         Some(scaled) => format!(
-            "the camera of this map, which has {w} x {h} pixels; scaled it is {}, and --camera-size {width}x{height} scales it; if the \
-             map is not resized but a part of the picture, take the part's corner off the principal point",
-            flag(&scaled)
+            "the camera of this map, which has {w} x {h} pixels; scaled it is {}, and --camera-size {width}x{height} scales it; {}",
+            flag(&scaled),
+            OF_CROP
         ),
-        None if scaled(camera, (height, width), map).is_some() => format!(
-            "the camera of this map, which has {w} x {h} pixels: the picture was turned by 90 degrees; turn the map back, or \
-             exchange fx and fy, and put the principal point where it is in the turned picture"
-        ),
-        None => format!(
-            "the camera of this map, which has {w} x {h} pixels and another shape: if it is a part of the picture, take the part's \
-             corner off the principal point and give --intrinsics fx,fy,cx,cy"
-        ),
+        None => match turned(camera, (width, height), map) {
+            Some([clockwise, other]) => format!(
+                "the camera of this map, which has {w} x {h} pixels: the picture was turned by 90 degrees; turn the map back, or give \
+                 {} if it was turned clockwise, {} if counter-clockwise",
+                flag(&clockwise),
+                flag(&other)
+            ),
+            None => format!(
+                "the camera of this map, which has {w} x {h} pixels and another shape: {}",
+                of_other_shape(camera, (width, height), map)
+            ),
+        },
     };
     Error::parameter("camera", format_args!("for {width} x {height} pixels"), accepted)
 }
@@ -211,7 +248,7 @@ fn checked(camera: &Intrinsics, map: Size, is_size_stated: bool, lens: Option<&D
     let notes = [
         mirrored(camera),
         middle_elsewhere(camera, map, is_size_stated),
-        odd_pixels(camera),
+        odd_pixels(camera, map),
         odd_field(camera, map).filter(|_| !is_wide),
     ];
     Ok(notes.into_iter().flatten().collect())
@@ -264,13 +301,19 @@ fn refuse_outside(camera: &Intrinsics, map: Size) -> Result<()> {
     let accepted = match whole_picture(camera, map) {
         Some(((width, height), scaled)) => format!(
             "a principal point within the map, which has {w} x {h} pixels; this one is that of {width} x {height}: {}, or \
-             --camera-size {width}x{height}",
+             --camera-size {width}x{height}; {OF_CROP}",
             flag(&scaled)
         ),
-        None => format!(
-            "a principal point within the map, which has {w} x {h} pixels; --camera-size WxH if the camera is for another size, \
-             --camera-size {w}x{h} if the map is a part of a larger picture"
-        ),
+        None => match COMMON.into_iter().find(|size| is_middle_of([cx, cy], *size)) {
+            Some((width, height)) => format!(
+                "a principal point within the map, which has {w} x {h} pixels; this one is that of {width} x {height}: {}",
+                of_other_shape(camera, (width, height), map)
+            ),
+            None => format!(
+                "a principal point within the map, which has {w} x {h} pixels; --camera-size WxH if the camera is for another \
+                 size, --camera-size {w}x{h} if the map is a part of a larger picture"
+            ),
+        },
     };
     Err(Error::parameter("principal point", format_args!("{cx},{cy}"), accepted))
 }
@@ -287,16 +330,16 @@ fn middle_elsewhere(camera: &Intrinsics, map: Size, is_size_stated: bool) -> Opt
     }
     if let Some(((width, height), scaled)) = whole_picture(camera, map).filter(|_| !is_size_stated) {
         return Some(format!(
-            "the principal point {cx},{cy} is the middle of {width} x {height} pixels, {has}: if the camera is for that size, give \
-             --camera-size {width}x{height} or {}",
+            "the principal point {cx},{cy} is the middle of {width} x {height} pixels, {has}: if the picture was resized, give \
+             --camera-size {width}x{height} or {}; {OF_CROP}",
             flag(&scaled)
         ));
     }
     let is_known = |size: &Size| !is_size_stated && !is_middle_of([cx, cy], map) && is_middle_of([cx, cy], *size);
     if let Some((width, height)) = COMMON.into_iter().find(is_known) {
         return Some(format!(
-            "the principal point {cx},{cy} is the middle of {width} x {height} pixels, {has}: if it is a part of that picture, take \
-             the part's corner off the principal point; if it was resized, give --camera-size {width}x{height}"
+            "the principal point {cx},{cy} is the middle of {width} x {height} pixels, {has}: {}",
+            of_other_shape(camera, (width, height), map)
         ));
     }
     (!is_near_middle([cx, cy], map)).then(|| {
@@ -314,11 +357,23 @@ fn mirrored(&Intrinsics { fx, .. }: &Intrinsics) -> Option<String> {
     })
 }
 
-/// Pixels that are far from square.
-fn odd_pixels(&Intrinsics { fx, fy, .. }: &Intrinsics) -> Option<String> {
-    (!(0.7..1.4).contains(&(fx / fy).abs())).then(|| {
-        format!("focal lengths of {fx} and {fy} pixels mean pixels that are far from square: is the order fx,fy,cx,cy?")
-    })
+/// Pixels that are far from square: where they would not be in the order fx,cx,fy,cy, or where nobody's are. Scanners and
+/// maps without every second row have such pixels.
+fn odd_pixels(camera: &Intrinsics, map: Size) -> Option<String> {
+    let Intrinsics { fx, fy, cx, cy } = *camera;
+    let is_square = |fx: f64, fy: f64| (0.7..1.4).contains(&(fx / fy).abs());
+    let is_other_order = !is_square(fx, fy) && is_square(fx, cx) && is_near_middle([fy, cy], map);
+    let is_own_order = is_middle_of([cx, cy], map);
+    let far = "pixels that are far from square";
+    match () {
+        () if is_other_order && !is_own_order => {
+            Some(format!("focal lengths of {fx} and {fy} pixels mean {far}: is the order fx,fy,cx,cy?"))
+        }
+        () if !(0.1..10.0).contains(&(fx / fy).abs()) => {
+            Some(format!("focal lengths of {fx} and {fy} pixels mean {far}: check --intrinsics and --camera"))
+        }
+        () => None,
+    }
 }
 
 /// A field of view that is far from usual.

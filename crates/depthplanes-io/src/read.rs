@@ -19,6 +19,7 @@ use crate::map_camera::{MapCamera, Stated, map_camera};
 use crate::presets::{self, PresetNoise, SensorPreset};
 use crate::ray_distance;
 use crate::traps::missing::not_measured;
+use crate::traps::packing::not_packed;
 use crate::traps::traps;
 
 /// What the user says of a map beside its bytes. The default says nothing.
@@ -131,6 +132,7 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
     let scale =
         scale(options, encoding)?.or_else(|| scale_of_camera_file(&camera, encoding.name, is_stated, &mut image));
     image.warnings.extend(doubt_of_rig(options.stereo, &camera, encoding));
+    image.warnings.extend(not_packed(&image.pixels, encoding.name));
     let stereo = options.stereo.or(camera.stereo);
     let meaning = (encoding.apply)(&mut image, &Given { scale, stereo })?;
     let of_preset = |part: fn(&SensorPreset) -> Option<PresetNoise>| part(preset?)?.of();

@@ -164,7 +164,7 @@ fn traps_name_the_option_to_try() {
     let warnings =
         |values: Vec<u16>| decode(&pgm16(64, &values), "x", &ReadOptions::default()).unwrap().warnings.join("; ");
     assert_eq!(warnings(slope(1001, 1)), "");
-    assert!(warnings(slope(1000, 8)).contains("--encoding kinect-sdk"));
+    assert!(warnings(slope(5000, 8)).contains("--encoding kinect-sdk"));
     assert!(warnings(slope(5000, 5)).contains("--encoding tum"));
     assert!(warnings(slope(20, 1)).contains("--encoding grey"));
     assert!(warnings(slope(1001, 1).iter().map(|v| v.swap_bytes()).collect()).contains("--swap-bytes"));

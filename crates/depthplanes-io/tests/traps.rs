@@ -365,7 +365,7 @@ fn cameras_in_other_words_are_named() {
     let of = |fx, fy, cx, cy| ReadOptions { intrinsics: Some(depthplanes::Intrinsics { fx, fy, cx, cy }), ..camera() };
     let refused = |options| decode(&counts(millimetres), "room", &options).unwrap_err().to_string();
     assert!(refused(of(0.9, 1.2, 0.5, 0.5)).contains("parts of the picture"), "{}", refused(of(0.9, 1.2, 0.5, 0.5)));
-    let frame = read(&counts(millimetres), &of(115.2, 63.5, 60.0, 47.5));
+    let frame = read(&counts(millimetres), &of(115.2, 63.5, 112.0, 47.5));
     assert!(frame.warnings.iter().any(|note| note.contains("order")), "{:?}", frame.warnings);
     let sized = |size| ReadOptions { camera_size: Some(size), ..of(576.0, 576.0, 319.5, 239.5) };
     check("a camera of five times the size", &read(&counts(millimetres), &sized((640, 480))), &ROOM, CLOSE);
@@ -411,7 +411,7 @@ fn a_map_of_noise_is_no_surface() {
     let random = |at: usize| ((at as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as f64 / (1u64 << 24) as f64;
     let frame = read(&counts(|at, _| 500.0 + 3000.0 * random(at)), &camera());
     if !room::planes(&frame).0.is_empty() {
-        noted("noise", &frame, &["scatter by", "noise rather than a surface"]);
+        noted("noise", &frame, &["scatter by", "noise or a photograph rather than a surface"]);
     }
 }
 
@@ -454,14 +454,235 @@ fn cameras_of_turned_and_cut_pictures_are_noticed() {
         intrinsics: Some(depthplanes::Intrinsics { fx: 576.0, fy: 576.0, cx: 319.5, cy: 239.5 }),
         ..Default::default()
     };
-    noted("cut", &read(&bytes, &options), &["the middle of 640 x 480", "part of that picture"]);
+    noted("cut", &read(&bytes, &options), &["the middle of 640 x 480", "crop of that picture"]);
 }
 
 #[test]
-fn pixels_that_stand_apart_are_named() {
-    let bytes =
-        counts(|at, depth| if at.is_multiple_of(4) && (at / SIZE[0]).is_multiple_of(4) { 1000.0 * depth } else { 0.0 });
-    noted("one of 16", &read(&bytes, &camera()), &["stand apart"]);
+fn maps_that_few_pixels_were_measured_of_are_named() {
+    for (name, words, is_measured) in [
+        (
+            "one of 16",
+            ["one pixel of 16 was", "bins of 4 x 4"],
+            &(|u: usize, v: usize| u % 4 == 0 && v % 4 == 0) as &dyn Fn(usize, usize) -> bool,
+        ),
+        ("every third row", ["one pixel of 3 was", "bins of 1 x 3"], &|_: usize, v: usize| v % 3 == 0),
+        ("every second column", ["one pixel of 2 was", "bins of 2 x 1"], &|u: usize, _: usize| u % 2 == 0),
+        ("a chequered lattice", ["one pixel of 9 was", "bins of 3 x 3"], &|u: usize, v: usize| {
+            u % 3 == 1 && v % 3 == 1
+        }),
+    ] {
+        let bytes = counts(|at, depth| if is_measured(at % SIZE[0], at / SIZE[0]) { 1000.0 * depth } else { 0.0 });
+        let frame = read(&bytes, &camera());
+        noted(name, &frame, &words);
+        assert!(!notes(&frame).contains("are missing"), "{name}");
+    }
+}
+
+#[test]
+fn maps_that_were_enlarged_by_repeating_pixels_are_named() {
+    let source = |u: usize, v: usize| (v * SIZE[0] + u).min(SIZE[0] * SIZE[1] - 1);
+    for (factor, words) in
+        [([2, 2], "2 x 2 times"), ([4, 4], "4 x 4 times"), ([3, 3], "3 x 3 times"), ([2, 4], "2 x 4 times")]
+    {
+        let [x, y] = factor;
+        let depths = depths_m();
+        let depth = |at: usize| depths[source(at % SIZE[0] / x * x, at / SIZE[0] / y * y)];
+        let frame = read(&counts(|at, _| 1000.0 * depth(at)), &camera());
+        let pixels = format!("{} x {} pixels that it was made from", SIZE[0].div_ceil(x), SIZE[1].div_ceil(y));
+        noted(words, &frame, &[words, &pixels, "by repeating pixels"]);
+    }
+}
+
+#[test]
+fn values_between_nothing_and_a_surface_are_named() {
+    let is_hole = |u: usize, v: usize| (u / 4 * 7 + v / 4 * 5) % 11 < 2;
+    let depths = depths_m();
+    let value = |u: usize, v: usize| if is_hole(u, v) { 0.0 } else { 1000.0 * depths[v * SIZE[0] + u] };
+    // From every n-th pixel of the room, linear between them.
+    let enlarged = |n: usize, at: usize, curve: fn(f64) -> f64| {
+        let place = |at: usize, side: usize| {
+            let (low, share) = (at / n * n, curve((at % n) as f64 / n as f64));
+            (low, (low + n).min((side - 1) / n * n), share)
+        };
+        let ((u0, u1, a), (v0, v1, b)) = (place(at % SIZE[0], SIZE[0]), place(at / SIZE[0], SIZE[1]));
+        let row = |v: usize| value(u0, v) * (1.0 - a) + value(u1, v) * a;
+        row(v0) * (1.0 - b) + row(v1) * b
+    };
+    let linear = |share| share;
+    let cubic = |share: f64| share * share * (3.0 - 2.0 * share);
+    for (name, n, curve) in [
+        ("twice, linear", 2, linear as fn(f64) -> f64),
+        ("four times, linear", 4, linear),
+        ("three times, smooth", 3, cubic),
+    ] {
+        let frame = read(&counts(|at, _| enlarged(n, at, curve)), &camera());
+        noted(name, &frame, &["edges of holes", "resized with interpolation"]);
+    }
+    let floats = floats(|at, _| enlarged(4, at, linear) / 1000.0);
+    noted("metres", &read(&floats, &camera()), &["edges of holes", "resized with interpolation"]);
+    for nearest in [2, 3, 4] {
+        let bytes = counts(|at, _| value(at % SIZE[0] / nearest * nearest, at / SIZE[0] / nearest * nearest));
+        assert!(!notes(&read(&bytes, &camera())).contains("interpolation"), "{nearest}");
+    }
+}
+
+#[test]
+fn floats_from_0_to_1_are_no_metres() {
+    let depths = depths_m();
+    let [nearest, farthest] =
+        [f64::min as fn(f64, f64) -> f64, f64::max].map(|of| depths.iter().copied().reduce(of).unwrap());
+    let buffer = |near: f64, far: f64| floats(move |_, depth| far * (depth - near) / (depth * (far - near)));
+    for (name, bytes, words) in [
+        ("a share of the largest", floats(|_, depth| depth / farthest), ["share of the largest depth", "--scale"]),
+        ("a share of 4.4 m", floats(|_, depth| depth / (1.05 * farthest)), ["share of the largest depth", "--scale"]),
+        ("a depth buffer", buffer(0.1, 100.0), ["depth buffer", "near far"]),
+        ("another depth buffer", buffer(0.05, 20.0), ["depth buffer", "near far"]),
+        ("normalised", floats(|_, depth| (depth - nearest) / (farthest - nearest)), ["whole range", "--scale"]),
+    ] {
+        noted(name, &read(&bytes, &camera()), &words);
+        assert!(!notes(&read(&bytes, &encoding("metre"))).contains("share"), "{name}: stated");
+    }
+    for closer in [3.0, 4.0, 6.0] {
+        let notes = notes(&read(&floats(|_, depth| depth / closer), &camera()));
+        assert!(!notes.contains("depth buffer") || farthest / closer > 0.9, "a table at {closer}: {notes}");
+    }
+}
+
+#[test]
+fn centimetres_are_asked_for() {
+    for (name, bytes) in [
+        ("16 bits", counts(|_, depth| 100.0 * depth)),
+        ("floats", floats(|_, depth| 100.0 * depth)),
+        ("a smaller room", counts(|_, depth| 70.0 * depth)),
+        ("a desk", counts(|_, depth| 35.0 * depth)),
+    ] {
+        noted(name, &read(&bytes, &camera()), &["centimetres", "--scale 100"]);
+        let right = read(&bytes, &ReadOptions { scale: Some(100.0), ..camera() });
+        assert!(!notes(&right).contains("centimetres"), "{name}: {}", notes(&right));
+    }
+    check(
+        "by its scale",
+        &read(&floats(|_, depth| 100.0 * depth), &ReadOptions { scale: Some(100.0), ..camera() }),
+        &ROOM,
+        CLOSE,
+    );
+}
+
+#[test]
+fn a_preset_of_another_unit_is_doubted() {
+    // As a Kinect's millimetres, of which the lowest bits are any.
+    let mm = |shift: f64| counts(move |at, depth| 1000.0 * depth + shift + (at % 5) as f64);
+    for shift in [0.0, 3.0, 200.0] {
+        noted("Kinect SDK", &read(&mm(shift), &preset("kinect1-sdk")), &["lowest three bits", "--encoding millimetre"]);
+        noted("packed", &read(&mm(shift), &encoding("kinect-sdk")), &["lowest three bits", "--encoding millimetre"]);
+        let disparity = notes(&read(&mm(shift), &preset("stereo")));
+        assert!(disparity.contains("they are depth: try --encoding millimetre"), "{disparity}");
+        for of in ["tum-fr1", "tum-fr2", "tum-fr3"] {
+            noted(of, &read(&mm(shift), &preset(of)), &["no multiples of 5", "--encoding millimetre"]);
+        }
+        for of in ["kinect1", "structure", "7-scenes"] {
+            let scaled = ReadOptions { scale: Some(10_000.0), ..preset(of) };
+            noted(of, &read(&mm(shift), &scaled), &["leave --scale out"]);
+        }
+    }
+    let players = counts(|at, depth| 8.0 * (1000.0 * depth).round() + f64::from(u8::from(at % 128 < 20)) * 2.0);
+    check("players", &read(&players, &preset("kinect1-sdk")), &ROOM, CLOSE);
+    assert_eq!(notes(&read(&players, &preset("kinect1-sdk"))), "");
+    let tum = counts(|_, depth| 5.0 * (1000.0 * depth).round());
+    assert_eq!(notes(&read(&tum, &ReadOptions { intrinsics: Some(CAMERA), ..preset("tum-fr1") })), "");
+}
+
+#[test]
+fn a_rig_beside_depth_in_millimetres_is_doubted() {
+    for baseline_m in [0.05, 0.1, 0.5] {
+        let rig = Stereo { focal_px: 115.2, baseline_m, doffs_px: 0.0 };
+        let frame = read(&counts(millimetres), &ReadOptions { stereo: Some(rig), ..camera() });
+        noted("a rig", &frame, &["--encoding millimetre if it is depth"]);
+    }
+}
+
+#[test]
+fn millimetres_in_few_steps_are_no_packed_bits() {
+    for step in [8.0, 16.0, 24.0] {
+        let frame = read(&counts(|_, depth| step * (1000.0 * depth / step).round()), &camera());
+        assert!(!notes(&frame).contains("kinect-sdk"), "steps of {step} mm: {}", notes(&frame));
+    }
+    let packed = read(&counts(|_, depth| 8.0 * (1000.0 * depth).round()), &camera());
+    noted("packed", &packed, &["multiples of 8", "--encoding kinect-sdk"]);
+}
+
+#[test]
+fn a_photograph_of_16_bits_is_no_surface_with_and_without_a_camera() {
+    let random = |at: usize| ((at as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as f64 / (1u64 << 24) as f64;
+    for (brightness, spread) in [(2000.0, 1500.0), (900.0, 800.0), (3000.0, 2500.0)] {
+        let photo = counts(|at, _| brightness + spread * (random(at) - 0.5) + 300.0 * random(at / 16));
+        for options in [ReadOptions::default(), camera()] {
+            let frame = read(&photo, &options);
+            if !room::planes(&frame).0.is_empty() {
+                noted("a photograph", &frame, &["scatter by", "photograph"]);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_missing_value_that_was_stated_is_not_asked_for_again() {
+    for (share, value) in [(60, 3500.0), (80, 65_535.0), (55, 1.0)] {
+        let bytes = counts(|at, depth| if at % SIZE[0] * 100 < share * SIZE[0] { value } else { 1000.0 * depth });
+        let frame = read(&bytes, &ReadOptions { missing: Some(value), ..camera() });
+        assert!(!notes(&frame).contains("are missing"), "{value}: {}", notes(&frame));
+    }
+}
+
+#[test]
+fn pictures_without_some_rows_and_cropped_ones_get_their_cameras() {
+    let of = |width: usize, height: usize, fx: f64, fy: f64, cx: f64, cy: f64| {
+        let bytes = [format!("P5 {width} {height} 65535\n").into_bytes(), [7, 208].repeat(width * height)].concat();
+        let intrinsics = Some(depthplanes::Intrinsics { fx, fy, cx, cy });
+        match decode(&bytes, "map", &ReadOptions { intrinsics, ..Default::default() }) {
+            Ok(frame) => frame.warnings.join("\n"),
+            Err(refusal) => refusal.to_string(),
+        }
+    };
+    for (size, right) in [
+        ((640, 240), [576.0, 288.0, 319.5, 119.5]),
+        ((320, 480), [288.0, 576.0, 159.5, 239.5]),
+        ((640, 160), [576.0, 192.0, 319.5, 79.5]),
+    ] {
+        let [fx, fy, cx, cy] = right;
+        let (notes, flag) =
+            (of(size.0, size.1, 576.0, 576.0, 319.5, 239.5), format!("--intrinsics={fx},{fy},{cx},{cy}"));
+        assert!(notes.contains(&flag) && notes.contains("crop of that picture"), "{size:?}: {notes}");
+        assert!(!notes.contains("--camera-size"), "{size:?}: {notes}");
+        assert!(!of(size.0, size.1, fx, fy, cx, cy).contains("square"), "{size:?}");
+    }
+    let notes = of(320, 240, 576.0, 576.0, 319.5, 239.5);
+    assert!(notes.contains("--camera-size 640x480") && notes.contains("subtract the crop's left column"), "{notes}");
+    // A scanner's pixels.
+    assert!(!of(512, 512, 1586.0, 2301.0, 255.0, 255.0).contains("square"));
+}
+
+#[test]
+fn pictures_that_were_turned_get_their_cameras() {
+    let refused = |size, [fx, fy, cx, cy]: [f64; 4]| {
+        let bytes = [b"P5 480 640 65535\n".to_vec(), [7, 208].repeat(480 * 640)].concat();
+        let intrinsics = Some(depthplanes::Intrinsics { fx, fy, cx, cy });
+        let options = ReadOptions { intrinsics, camera_size: Some(size), ..Default::default() };
+        decode(&bytes, "map", &options).unwrap_err().to_string()
+    };
+    for (size, camera, [clockwise, other]) in [
+        ((640, 480), [570.0, 580.0, 320.0, 240.0], ["580,570,239,320", "580,570,240,319"]),
+        ((1280, 960), [1140.0, 1160.0, 640.5, 480.5], ["580,570,239,320", "580,570,240,319"]),
+        ((640, 480), [500.0, 500.0, 300.0, 250.0], ["500,500,229,300", "500,500,250,339"]),
+    ] {
+        let refusal = refused(size, camera);
+        for four in [clockwise, other] {
+            assert!(
+                refusal.contains("turned by 90") && refusal.contains(&format!("--intrinsics={four}")),
+                "{four}: {refusal}"
+            );
+        }
+    }
 }
 
 #[test]

@@ -330,8 +330,10 @@ pub(super) fn numbers<const N: usize>(id: &'static str, value: &'static str) -> 
     Arg::new(id).value_name(value).allow_hyphen_values(true).value_parser(|text: &str| {
         let parts = text.split(',').map(parse_number).collect::<Result<Vec<f64>, _>>()?;
         let given = parts.len();
-        <[f64; N]>::try_from(parts)
-            .map_err(|_| format!("accepted: {N} numbers with commas between; {given} were given"))
+        <[f64; N]>::try_from(parts).map_err(|_| {
+            let were = if given == 1 { "was" } else { "were" };
+            format!("accepted: {N} numbers with commas between and no blanks; {given} {were} given")
+        })
     })
 }
 

@@ -18,13 +18,51 @@ use depthplanes_io::outputs::{self, OUTPUTS, Output, Report, TableForm};
 use depthplanes_io::{ReadOptions, doubts, memory};
 use done::Done;
 use indicatif::{ProgressBar, ProgressStyle};
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::PathBuf;
 use table::Table;
 use tally::{Tally, print};
 use targets::{check_outputs, file_in, is_standard_output};
 
 pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
+    if wanted.out_dir.is_none() && wanted.outputs.is_empty() && wanted.table.is_none() {
+        return run_to(wanted, out);
+    }
+    run_to(wanted, &mut MayClose { out, is_closed: false })
+}
+
+/// Standard output beside files: whoever reads it may stop, and the files are written nevertheless.
+struct MayClose<'a> {
+    out: &'a mut dyn Write,
+    is_closed: bool,
+}
+
+impl MayClose<'_> {
+    fn unless_closed<T>(&mut self, instead: T, act: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> io::Result<T> {
+        if self.is_closed {
+            return Ok(instead);
+        }
+        match act(self.out) {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
+                self.is_closed = true;
+                Ok(instead)
+            }
+            done => done,
+        }
+    }
+}
+
+impl Write for MayClose<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.unless_closed(bytes.len(), |out| out.write(bytes))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.unless_closed((), |out| out.flush())
+    }
+}
+
+fn run_to(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     let recipe = Recipe::new(wanted.method, &wanted.parameters, wanted.threads)?;
     let recipe = recipe.outlines(wanted.outlines, wanted.min_hole)?.merge_coplanar(wanted.merge_coplanar)?;
     let needs_curved =

@@ -121,7 +121,7 @@ fn readable(found: &[(String, Estimate)], all: &Estimate) -> String {
     text += &match flags(all) {
         Some(flags) => {
             format!(
-                "Flags state the smooth part as all means over 16 pixels show it, with the scene's edges, which is what `detect` grows planes by; longer waves it finds by itself.\nTo use it: depthplanes detect {flags}\n"
+                "The flags state the smooth part as means over 16 x 16 pixels have it, edges in the scene included: `detect` needs it so, and finds longer waves by itself.\nTo use it: depthplanes detect {flags}\n"
             )
         }
         None => "There is no noise beside rounding, and nothing to tell `detect`.\n".to_string(),

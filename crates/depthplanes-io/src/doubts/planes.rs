@@ -1,7 +1,7 @@
 //! Planes that no camera sees.
 
-use depthplanes::Plane;
 use depthplanes::detection::MetricPlane;
+use depthplanes::{Detector, Intrinsics, Plane, Sensor, ValueKind};
 
 use crate::outputs::Report;
 use crate::traps::{doubt_of_depth, length};
@@ -58,12 +58,42 @@ const SCATTER: f64 = 0.15;
 
 /// A plane whose points scatter as those of no surface do.
 pub(super) fn scattered(report: &Report<'_>) -> Option<String> {
-    let planes = report.detection.planes.iter().filter(|plane| plane.share_of_valid > 0.1);
+    let sensor = nominal(report)?;
+    let mut detector;
+    let again = match report.is_metric() {
+        true => None,
+        // Planes bend in the map's values: only those that scatter there are worth the time.
+        false if !report.detection.planes.iter().any(|plane| scatters_in_values(plane)) => return None,
+        false => {
+            detector = Detector::default().sensor(sensor);
+            Some(detector.detect(report.frame.view().ok()?).ok()?)
+        }
+    };
+    let planes = again.unwrap_or(report.detection).planes.iter().filter(|plane| plane.share_of_valid > 0.1);
     let found = planes.filter_map(|plane| Some((plane.label, plane.metric.as_ref()?)));
     let (label, metric) = found.into_iter().find(|(_, metric)| metric.rms_m > SCATTER * metric.centroid_m[2])?;
     Some(format!(
-        "the points of plane {label} scatter by {} at a depth of {}: noise rather than a surface? check --encoding and the file",
+        "the points of plane {label} scatter by {} at a depth of {}: noise or a photograph rather than a surface? check --encoding \
+         and the file",
         length(metric.rms_m),
         length(metric.centroid_m[2])
     ))
+}
+
+/// The sensor, with a usual camera where none is known: how far points are off a plane hardly depends on it.
+fn nominal(report: &Report<'_>) -> Option<Sensor> {
+    let (frame, sensor) = (report.frame, report.frame.sensor);
+    if sensor.intrinsics.is_some() {
+        return Some(sensor);
+    }
+    let [width, height] = [frame.width, frame.height].map(|side| side as f64);
+    let (is_depth, focal) = (matches!(sensor.value_kind, ValueKind::Depth { .. }), 0.9 * width.max(height));
+    let camera = Intrinsics::new(focal, focal, 0.5 * (width - 1.0), 0.5 * (height - 1.0)).ok()?;
+    (is_depth && report.method.name == "planar").then(|| sensor.intrinsics(Some(camera)))
+}
+
+fn scatters_in_values(plane: &Plane) -> bool {
+    let ([u, v], is_large) = (plane.centroid, plane.share_of_valid > 0.1);
+    is_large
+        && plane.fit.is_some_and(|fit| fit.rms > SCATTER * (fit.gradient[0] * u + fit.gradient[1] * v + fit.offset))
 }

@@ -5,7 +5,7 @@
 
 use depthplanes::{Detection, Detector, Planar, Sensor, ValueKind};
 
-use crate::frame::Frame;
+use crate::frame::{Frame, Pixels};
 use crate::outputs::Report;
 use crate::ray_distance;
 use crate::traps::{Probe, is_small};
@@ -45,7 +45,7 @@ impl Score {
 /// A reading under which far more pixels lie on planes.
 pub(super) fn better(report: &Report<'_>) -> Option<String> {
     let (frame, as_read) = (report.frame, Score::of(report.detection));
-    let explained = ["label image", "try --swap-bytes", "try --preset kinect1-raw"];
+    let explained = ["label image", "try --swap-bytes", "try --preset kinect1-raw", "resized with interpolation"];
     let is_explained = |warning: &String| explained.iter().any(|words| warning.contains(words));
     if frame.warnings.iter().any(is_explained)
         || report.method.name != "planar"
@@ -79,12 +79,22 @@ pub(super) fn better(report: &Report<'_>) -> Option<String> {
                 _ => None,
             }
         }
+        ValueKind::Disparity | ValueKind::InverseDepth { .. } if is_assumed_disparity(frame) => {
+            let score = with(frame, ValueKind::Depth { metres: 1e-3 })?;
+            score.is_whole_beside(&as_read).then(|| told(score, "they are depth: try --encoding millimetre"))
+        }
         ValueKind::Disparity if frame.format == "pfm" && frame.provenance.is_guess() => {
             let score = with(frame, ValueKind::Depth { metres: 1.0 })?;
             score.beats(&as_read).then(|| told(score, "they are depth: try --encoding metre or millimetre"))
         }
         _ => None,
     }
+}
+
+/// Whether 16 bits are read as disparity because of a preset, a rig or a camera file.
+fn is_assumed_disparity(frame: &Frame) -> bool {
+    let is_16_bits = matches!(frame.pixels, Pixels::U16(_));
+    is_16_bits && frame.provenance.encoding != "stated" && ["kitti", "disparity"].contains(&frame.encoding)
 }
 
 /// How much larger values have to be in the lower half of a picture to look like disparity or inverse depth: what is near is

@@ -175,8 +175,11 @@ fn plausible(bytes: &[u8], (_, sample, big_endian): &Type) -> bool {
     fitting * 100 >= some * 98 && finite > 0
 }
 
-/// What to say of 16-bit integers that are rather floats. Those of 0.1 to 32 m are the integers from 11,878 to 20,480, where no
-/// depth camera has all of its millimetres.
+/// Depths as 16-bit floats hold them: unit, smallest, largest.
+const OF_HALVES: [(&str, f32, f32); 2] = [("m", 0.1, 32.0), ("mm", 100.0, 32_000.0)];
+
+/// What to say of 16-bit integers that are rather floats. Those of 0.1 to 32 m are the integers from 11,878 to 20,480, those of
+/// 100 to 32,000 mm the ones from 22,080 to 30,672, where no depth camera has all of its millimetres.
 fn halves(bytes: &[u8]) -> Option<String> {
     let every = (bytes.len() / 2).div_ceil(1 << 16).max(1);
     for (name, big_endian) in [("float16", false), ("float16-be", true)] {
@@ -184,19 +187,21 @@ fn halves(bytes: &[u8]) -> Option<String> {
             if big_endian { u16::from_be_bytes([pair[0], pair[1]]) } else { u16::from_le_bytes([pair[0], pair[1]]) }
         });
         // 0, infinities and NaN stand for nothing.
-        let mut metres: Vec<f32> = bits.filter(|bits| bits & 0x7fff != 0).map(half).filter(|m| m.is_finite()).collect();
-        let usual = metres.iter().filter(|metres| (0.1..32.0).contains(*metres)).count();
-        if usual < 64 || usual * 100 < metres.len() * 99 {
-            continue;
-        }
-        metres.sort_by(f32::total_cmp);
-        let [low, high] = [metres[metres.len() / 50], metres[metres.len() * 49 / 50]];
-        // Integers that are about equal say nothing.
-        if high > 1.2 * low {
-            return Some(format!(
-                "as 16-bit floats the values are depths of {low:.1} to {high:.1} m, as integers they are all alike: try \
-                 --raw-type {name}"
-            ));
+        let mut depths: Vec<f32> = bits.filter(|bits| bits & 0x7fff != 0).map(half).filter(|m| m.is_finite()).collect();
+        depths.sort_by(f32::total_cmp);
+        for (unit, least, most) in OF_HALVES {
+            let usual = depths.iter().filter(|depth| (least..most).contains(*depth)).count();
+            if usual < 64 || usual * 100 < depths.len() * 99 {
+                continue;
+            }
+            let [low, high] = [depths[depths.len() / 50], depths[depths.len() * 49 / 50]];
+            // Integers that are about equal say nothing.
+            if high > 1.2 * low {
+                return Some(format!(
+                    "as 16-bit floats the values are depths of {low:.1} to {high:.1} {unit}, as integers they are all alike: try \
+                     --raw-type {name}"
+                ));
+            }
         }
     }
     None
@@ -223,7 +228,10 @@ fn swapped_size(pixels: &Pixels, width: usize, height: usize) -> Option<String> 
     }
     let (stated, swapped) = (apart(width)?, apart(height)?);
     (stated > 0.01 && stated > 4.0 * swapped).then(|| {
-        format!("rows of {width} do not go on in the rows below, rows of {height} do: try --raw-size {height}x{width}")
+        format!(
+            "the width {width} seems wrong: rows do not match the rows below them; with a width of {height} they do: try --raw-size \
+             {height}x{width}"
+        )
     })
 }
 

@@ -9,6 +9,11 @@ use depthplanes::{Detection, Plane, ValueKind};
 const PAPER: [u8; 3] = [38, 38, 44];
 const INK: [u8; 3] = [232, 232, 232];
 const FAINT: [u8; 3] = [176, 176, 182];
+/// Greys of the picture where there is no plane, and where nothing was measured.
+const NO_PLANE: [u8; 3] = [128; 3];
+const NO_DATA: [u8; 3] = [0; 3];
+/// Rows that say so.
+const GREYS: usize = 2;
 /// Pictures at least this high get letters of twice the size.
 const TALL: usize = 360;
 /// Even a small picture names this many planes.
@@ -90,7 +95,7 @@ fn row_height(scale: usize) -> usize {
 /// Rows below the heading.
 fn planes_that_fit(picture_height: usize, scale: usize) -> usize {
     let rows = picture_height.saturating_sub(2 * margin(scale)) / row_height(scale);
-    rows.saturating_sub(1).max(FEWEST_ROWS)
+    rows.saturating_sub(1 + GREYS).max(FEWEST_ROWS)
 }
 
 /// How many planes have a row; where not all fit, the last row counts the others.
@@ -102,9 +107,15 @@ fn planes_named(fitting: usize, detection: &Detection) -> usize {
 fn rows(fitting: usize, detection: &Detection, value_kind: ValueKind) -> Vec<Row> {
     let planes = &detection.planes;
     let named = planes_named(fitting, detection);
-    let told = |text: String| Row { swatch: None, cells: [String::new(), text, String::new(), String::new()] };
+    let row_of = |swatch, text: String| Row { swatch, cells: [String::new(), text, String::new(), String::new()] };
+    let told = |text| row_of(None, text);
+    let is_missing = detection.valid_pixels < detection.labels.len();
+    let is_left = detection.labelled_pixels() < detection.valid_pixels;
+    let greys = [(is_left, NO_PLANE, "no plane"), (is_missing, NO_DATA, "no data")];
+    let greys = greys.into_iter().filter(|(is_there, ..)| *is_there);
+    let greys = greys.map(|(_, swatch, text)| row_of(Some(swatch), text.into()));
     if planes.is_empty() {
-        return vec![told("no planes".into())];
+        return [told("no planes".into())].into_iter().chain(greys).collect();
     }
     let mut rows: Vec<Row> = planes[..named].iter().map(|plane| row(plane, value_kind)).collect();
     // A column of which nothing is known has no heading.
@@ -114,6 +125,7 @@ fn rows(fitting: usize, detection: &Detection, value_kind: ValueKind) -> Vec<Row
     if named < planes.len() {
         rows.push(told(format!("+{} more", planes.len() - named)));
     }
+    rows.extend(greys);
     rows
 }
 

@@ -103,15 +103,29 @@ pub(super) fn negative(_: &Frame, probe: &Probe) -> Option<String> {
     Some(format!("{} of the pixels are below 0 and count as missing: {what}", percent(share)))
 }
 
-/// Most of the map is missing.
+/// Most of the map is missing, and not because a value is known to stand for that.
 pub(super) fn mostly(frame: &Frame, probe: &Probe) -> Option<String> {
     let share = probe.missing_share();
+    let most = if is_small(frame) { 0.5 } else { 0.49 };
+    if share <= most || share - known_share(frame) <= most {
+        return None;
+    }
     let is_apart = probe.valid.len() >= FEW && 5 * probe.pairs.len() < probe.valid.len();
     let advice = if is_apart {
-        "the valid ones stand apart, so that few planes are found: save every second (third ..) column and row alone"
+        "the measured ones stand apart, and areas are those of the measured pixels"
     } else {
         "check --missing, --valid-range and --encoding"
     };
-    (share > if is_small(frame) { 0.5 } else { 0.49 })
-        .then(|| format!("{} of the pixels are missing: {advice}", percent(share)))
+    Some(format!("{} of the pixels are missing: {advice}", percent(share)))
+}
+
+/// Share of the pixels that have the value for "missing" that is known of the map.
+fn known_share(frame: &Frame) -> f64 {
+    let Some(missing) = frame.missing else { return 0.0 };
+    let count = match &frame.pixels {
+        Pixels::U8(values) => count(values, missing as u8),
+        Pixels::U16(values) => count(values, missing as u16),
+        Pixels::F32(values) => count(values, missing as f32),
+    };
+    count as f64 / frame.pixels.len().max(1) as f64
 }

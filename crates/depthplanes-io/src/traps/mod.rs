@@ -7,11 +7,13 @@
 //! A new trap is a function in one of the files and a row of [`TRAPS`].
 
 mod camera;
+mod holes;
 mod labels;
 pub(crate) mod missing;
-mod packing;
+pub(crate) mod packing;
 mod picture;
 mod probe;
+mod source;
 mod unit;
 
 pub(crate) use probe::{Probe, is_small};
@@ -22,16 +24,21 @@ use crate::frame::Frame;
 /// A look at a map; a note if it fell into the trap.
 type Look = fn(&Frame, &Probe) -> Option<String>;
 
-/// All traps. Of a row the first that is found is told, since it explains the others.
+/// What explains all that is odd about a map, and is told alone: what numbers mean is no question where they are names of
+/// regions.
+const ALONE: &[Look] = &[labels::labels, packing::kinect_raw];
+
+/// All other traps. Of a row the first that is found is told, since it explains the others.
 const TRAPS: &[&[Look]] = &[
-    &[missing::negative, missing::far_clip, missing::mostly],
+    &[missing::negative, missing::far_clip, source::sparse, missing::mostly],
+    &[source::enlarged, holes::interpolated],
     &[
         packing::swapped,
-        packing::kinect_raw,
         picture::eight_bits,
         packing::multiples,
         packing::grey_levels,
         picture::whole_range,
+        picture::shares,
         unit::median,
     ],
     &[camera::of_disparity],
@@ -41,8 +48,7 @@ const TRAPS: &[&[Look]] = &[
 /// The traps that a map may have fallen into.
 pub(crate) fn traps(frame: &Frame) -> Vec<String> {
     let Some(probe) = Probe::some(frame) else { return Vec::new() };
-    // What numbers mean is no question where they are names of regions.
-    if let Some(note) = labels::labels(frame, &probe) {
+    if let Some(note) = ALONE.iter().find_map(|look| look(frame, &probe)) {
         return vec![note];
     }
     TRAPS.iter().filter_map(|row| row.iter().find_map(|look| look(frame, &probe))).collect()

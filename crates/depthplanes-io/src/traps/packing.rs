@@ -30,16 +30,39 @@ pub(super) fn kinect_raw(frame: &Frame, probe: &Probe) -> Option<String> {
     })
 }
 
+/// Bits that say which player a pixel is of, in Kinect SDK 1.
+const PLAYER_BITS: u16 = 7;
+
+/// 16 bits that are read as Kinect SDK 1 packs them and are not: it has a player in few pixels, so that the lowest three
+/// bits of most are 0.
+pub(crate) fn not_packed(pixels: &Pixels, encoding: &str) -> Option<String> {
+    let Pixels::U16(values) = pixels else { return None };
+    let mut pixels_of = [0usize; PLAYER_BITS as usize + 1];
+    for &value in values.iter().filter(|&&value| value != 0 && encoding == "kinect-sdk") {
+        pixels_of[usize::from(value & PLAYER_BITS)] += 1;
+    }
+    let valid: usize = pixels_of.iter().sum();
+    let common = pixels_of.iter().filter(|&&pixels| 20 * pixels >= valid).count();
+    (valid >= FEW && common > 6).then(|| {
+        "the lowest three bits of the values are everything from 0 to 7, and Kinect SDK 1 keeps the number of a player there: \
+         are these plain millimetres? try --encoding millimetre"
+            .into()
+    })
+}
+
 /// 16 bits that hold 8.
 pub(super) fn grey_levels(frame: &Frame, probe: &Probe) -> Option<String> {
     let Pixels::U16(_) = frame.pixels else { return None };
     let (largest, _) = probe.largest()?;
-    let is_depth = matches!(frame.sensor.value_kind, ValueKind::Depth { .. });
-    (is_depth && largest < 256.0 && probe.valid.len() >= FEW)
-        .then(|| format!("16 bits but no value above {largest}: grey levels or labels? try --encoding grey"))
+    let ValueKind::Depth { metres } = frame.sensor.value_kind else { return None };
+    (largest < 256.0 && metres * largest < 0.3 && probe.valid.len() >= FEW).then(|| {
+        format!(
+            "16 bits but no value above {largest}: centimetres (--scale 100), or grey levels or labels (--encoding grey)?"
+        )
+    })
 }
 
-/// A median from which on millimetres that are multiples of 5 or 10 are rather finer units: few rooms are so deep, and in
+/// A median from which on millimetres that are multiples of 5, 8 or 10 are rather finer units: few rooms are so deep, and in
 /// units of 1/5000 m it is 0.9 m.
 const FAR_MM: f64 = 4500.0;
 
@@ -59,13 +82,13 @@ pub(super) fn multiples(frame: &Frame, probe: &Probe) -> Option<String> {
         let widened = "the values are multiples of 257, as a picture of 8 bits has when it is widened to 16";
         return Some(format!("{widened}: grey levels, not depth? try --encoding grey"));
     }
+    // Millimetres in steps of 8 or 10 are multiples as well, but nearer.
+    if median < FAR_MM {
+        return None;
+    }
     if multiples_of(8.0) {
         let packed = "the values are multiples of 8, as Kinect SDK 1 and SUN RGB-D pack them";
         return Some(format!("{packed}: try --encoding kinect-sdk or sun-rgbd"));
-    }
-    // Millimetres rounded to centimetres are multiples as well, but nearer.
-    if median < FAR_MM {
-        return None;
     }
     if multiples_of(10.0) {
         let tenths = "the values are multiples of 10, as millimetres in units of 0.1 mm are";

@@ -147,17 +147,22 @@ fn noises(trace: &Trace, run: &Runner, least: f64) -> Vec<Change> {
         Space::Value => vec![("noise", rounded_up(factor * here))],
         Space::InverseDepth { .. } => {
             let (z, sigma_m) = (trace.q.recip(), here / (trace.q * trace.q));
-            // At no range, as good as; what is below a nanometre is growth.
-            let base = noise.depth_sigma_m(1e-6).filter(|base| *base > 1e-9).unwrap_or(0.0);
             let own = noise.depth_sigma_m(z).unwrap_or(0.0);
-            let growth = ((own - base) / (z * z)).max(0.0);
+            // At no range, as good as; a part that is nothing beside the other is what is left by rounding.
+            let part = |of: f64| if of > 1e-3 * own { of } else { 0.0 };
+            let base = part(noise.depth_sigma_m(1e-6).unwrap_or(0.0));
+            let growth = part(own - base) / (z * z);
             // What rounding adds counts as well, since the noise as stated may be nothing.
             let times = factor * sigma_m / own;
-            if own > 0.0 && own > 0.3 * sigma_m {
-                vec![("noise", rounded_up(times * base)), ("noise-growth", rounded_up(times * growth))]
+            let (base, growth) = if own > 0.0 && own > 0.3 * sigma_m {
+                (rounded_up(times * base), rounded_up(times * growth))
             } else {
-                vec![("noise", rounded_up(factor * sigma_m)), ("noise-growth", 0.0)]
-            }
+                (rounded_up(factor * sigma_m), 0.0)
+            };
+            // A part that is nothing is 0 unless it was stated.
+            let parts = [("noise", base, run.params.noise), ("noise-growth", growth, run.params.noise_growth)];
+            let needed = parts.into_iter().filter(|(_, value, stated)| *value > 0.0 || *stated > 0.0);
+            needed.map(|(name, value, _)| (name, value)).collect()
         }
     };
     factors.map(scaled).collect()
