@@ -26,7 +26,7 @@ const WRONG: &[(&[&str], &str)] = &[
     (&["detect", "map.pgm", "--method", "magic"], "ngaf"),
     (&["detect", "map.pgm", "--encoding", "furlongs"], "encoding"),
     (&["detect", "map.pgm", "--preset", "eyes"], "preset"),
-    (&["detect", "map.pgm", "--intrinsics", "1,2,3"], "4 numbers with commas between; 3 were given"),
+    (&["detect", "map.pgm", "--intrinsics", "1,2,3"], "4 numbers with commas between and no blanks; 3 were given"),
     (&["detect", "map.pgm", "--intrinsics", "0,1,2,3"], "fx is 0"),
     (&["detect", "map.pgm", "--scale", "0"], "0"),
     (&["detect", "map.pgm", "--valid-range", "9,3"], "9 to 3 is empty"),
