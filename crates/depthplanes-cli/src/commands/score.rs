@@ -77,7 +77,7 @@ fn read_truth(truth: &Truth) -> Outcome<LabelImage> {
 }
 
 fn read(path: &std::path::Path) -> Outcome<LabelImage> {
-    let image = patiently(path.as_ref(), || read_labels(path, &DecodeOptions::default()))?;
+    let image = patiently(path, || read_labels(path, &DecodeOptions::default()))?;
     image.warnings.iter().for_each(|warning| note(&format!("{}: {warning}", path.display())));
     Ok(image)
 }

@@ -118,6 +118,7 @@ impl Distortion {
 
     /// Where the lens puts what a pinhole camera sees at (x, y), normalised coordinates. Far out the formulas mean nothing: see
     /// [`Distortion::undistort`].
+    #[inline]
     pub fn distort(&self, at: [f64; 2]) -> [f64; 2] {
         match self.model {
             DistortionModel::BrownConrady => self.polynomial(at),
@@ -215,6 +216,7 @@ impl Distortion {
     }
 
     /// The formula that Newton's method turns round.
+    #[inline]
     pub(super) fn forward(&self, at: [f64; 2]) -> [f64; 2] {
         match self.model {
             DistortionModel::ModifiedBrownConrady => self.modified(at),

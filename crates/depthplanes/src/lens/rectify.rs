@@ -178,12 +178,16 @@ impl<T: Pixel> Values<T> {
 /// The undistorted normalised coordinates of each pixel of the map; NaN where the lens puts nothing, and beyond [`WIDEST`].
 fn rays([width, height]: [usize; 2], camera: &Intrinsics, distortion: &Distortion) -> Vec<[f32; 2]> {
     let mut table = Table::of(distortion);
-    let ray = |at: usize| {
-        let [x, y, _] = camera.ray((at % width) as f64, (at / width) as f64);
-        let straight = table.undistort([x, y]).filter(|&ray| is_within(ray, WIDEST));
-        straight.map_or([f32::NAN; 2], |ray| ray.map(|side| side as f32))
-    };
-    (0..width * height).map(ray).collect()
+    let mut rays = Vec::with_capacity(width * height);
+    for v in 0..height {
+        let y = (v as f64 - camera.cy) / camera.fy;
+        rays.extend((0..width).map(|u| {
+            let straight =
+                table.undistort([(u as f64 - camera.cx) / camera.fx, y]).filter(|&ray| is_within(ray, WIDEST));
+            straight.map_or([f32::NAN; 2], |ray| ray.map(|side| side as f32))
+        }));
+    }
+    rays
 }
 
 /// Smallest and largest x and y of the rays; the axis alone if there is none.
@@ -223,17 +227,18 @@ fn places(
 ) -> Vec<[f32; 2]> {
     let is_inside = |place: f64, side: usize| place >= -BEYOND && place <= side as f64 - 1.0 + BEYOND;
     let mut table = Table::of(distortion);
-    let place = |at: usize| {
-        let [x, y, _] = pinhole.ray((at % columns) as f64, (at / columns) as f64);
-        // Beyond the fold of a formula other rays have the same pixels.
-        let Some(distorted) = table.distort([x, y]) else { return [f32::NAN; 2] };
-        let [u, v] = [camera.fx * distorted[0] + camera.cx, camera.fy * distorted[1] + camera.cy];
-        if !is_inside(u, width) || !is_inside(v, height) {
-            return [f32::NAN; 2];
-        }
-        [u as f32, v as f32]
-    };
-    (0..columns * rows).map(place).collect()
+    let mut places = Vec::with_capacity(columns * rows);
+    for row in 0..rows {
+        let y = (row as f64 - pinhole.cy) / pinhole.fy;
+        places.extend((0..columns).map(|column| {
+            // Beyond the fold of a formula other rays have the same pixels.
+            let place = table.distort([(column as f64 - pinhole.cx) / pinhole.fx, y]);
+            let place = place.map(|[x, y]| [camera.fx * x + camera.cx, camera.fy * y + camera.cy]);
+            let inside = place.filter(|&[u, v]| is_inside(u, width) && is_inside(v, height));
+            inside.map_or([f32::NAN; 2], |place| place.map(|side| side as f32))
+        }));
+    }
+    places
 }
 
 /// For each pixel of the map the picture's pixel nearest to its ray; of those around it one that shows this very pixel, if
@@ -255,6 +260,10 @@ fn back(
         }
         let [u, v] = pinhole.project([f64::from(ray[0]), f64::from(ray[1]), 1.0]);
         let (column, row) = (nearest(u as f32).min(columns - 1), nearest(v as f32).min(rows - 1));
+        let centre = row * columns + column;
+        if shows(centre) == Some(pixel) {
+            return centre as u32; // so it is for most
+        }
         let around = [0, -1, 1].into_iter().flat_map(|dv| [0, -1, 1].map(|du| (du, dv)));
         let around = around.filter_map(|(du, dv): (isize, isize)| {
             let (u, v) = (column.checked_add_signed(du)?, row.checked_add_signed(dv)?);

@@ -18,8 +18,9 @@ const MARGIN: f64 = 0.03;
 /// picture that is made.
 const FARTHEST: f64 = 3.8;
 
-/// How well the formula has to give back what was looked for, normalised coordinates: far below a 32-bit float's digits.
-const CLOSE: f64 = 1e-10;
+/// How well the formula has to give back what was looked for before the last step, normalised coordinates: that step takes
+/// a thousandth of it away or less, far below a 32-bit float's digits.
+const CLOSE: f64 = 1e-7;
 
 /// After so many pixels the derivative is worked out anew.
 const FRESH: u32 = 16;
@@ -172,6 +173,7 @@ impl<'a> Table<'a> {
             let given = self.lens.forward(at);
             off = [given[0] - goal[0], given[1] - goal[1]];
             if off[0].abs() + off[1].abs() < CLOSE {
+                at = [at[0] - a * off[0] - b * off[1], at[1] - c * off[0] - d * off[1]];
                 return Some(Solved { goal, at, age: if steps > 2 { FRESH } else { last.age + 1 }, ..last });
             }
         }
