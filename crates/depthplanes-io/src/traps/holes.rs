@@ -35,8 +35,11 @@ pub(super) fn interpolated(frame: &Frame, probe: &Probe) -> Option<String> {
 fn edges<T: Pixel>(view: DepthView<'_, T>, least: f64) -> [usize; 2] {
     let mut found = [0; 2];
     let mut look = |three: [T; 3]| {
-        let [hole, edge, next] = three.map(Into::<f64>::into);
-        if hole == 0.0 && edge > 0.0 && next >= least && next.is_finite() {
+        if three[0].into() != 0.0 {
+            return;
+        }
+        let [_, edge, next] = three.map(Into::<f64>::into);
+        if edge > 0.0 && next >= least && next.is_finite() {
             found[0] += 1;
             found[1] += usize::from(edge < RISES * next);
         }
