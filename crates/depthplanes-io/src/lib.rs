@@ -22,6 +22,7 @@ mod packed;
 pub mod presets;
 mod ray_distance;
 pub mod read;
+mod resized;
 mod stereo;
 mod traps;
 

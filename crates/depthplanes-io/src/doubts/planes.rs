@@ -63,7 +63,7 @@ pub(super) fn scattered(report: &Report<'_>) -> Option<String> {
     let again = match report.is_metric() {
         true => None,
         // Planes bend in the map's values: only those that scatter there are worth the time.
-        false if !report.detection.planes.iter().any(|plane| scatters_in_values(plane)) => return None,
+        false if !report.detection.planes.iter().any(scatters_in_values) => return None,
         false => {
             detector = Detector::default().sensor(sensor);
             Some(detector.detect(report.frame.view().ok()?).ok()?)

@@ -2,6 +2,7 @@
 
 use depthplanes::{DepthView, Pixel, ValueKind, with_view};
 
+use super::picture::whole_range;
 use super::probe::{Probe, is_small};
 use crate::frame::Frame;
 
@@ -16,9 +17,9 @@ const SURFACE: f64 = 0.1;
 
 /// Values between 0 and the surface at the edges of holes, as resizing with interpolation makes them where 0 stands for nothing.
 pub(super) fn interpolated(frame: &Frame, probe: &Probe) -> Option<String> {
-    // Of grey levels and disparity without a rig, 0 may be a value.
+    // Of grey levels, of relative depth and of disparity without a rig, 0 may be a value.
     let is_metric = matches!(frame.sensor.value_kind, ValueKind::Depth { .. } | ValueKind::InverseDepth { .. });
-    if is_small(frame) || !is_metric {
+    if is_small(frame) || !is_metric || whole_range(frame, probe).is_some() {
         return None;
     }
     let least = SURFACE * probe.median()?;
@@ -34,8 +35,11 @@ pub(super) fn interpolated(frame: &Frame, probe: &Probe) -> Option<String> {
 fn edges<T: Pixel>(view: DepthView<'_, T>, least: f64) -> [usize; 2] {
     let mut found = [0; 2];
     let mut look = |three: [T; 3]| {
-        let [hole, edge, next] = three.map(Into::<f64>::into);
-        if hole == 0.0 && edge > 0.0 && next >= least && next.is_finite() {
+        if three[0].into() != 0.0 {
+            return;
+        }
+        let [_, edge, next] = three.map(Into::<f64>::into);
+        if edge > 0.0 && next >= least && next.is_finite() {
             found[0] += 1;
             found[1] += usize::from(edge < RISES * next);
         }

@@ -37,8 +37,11 @@ const PLAYER_BITS: u16 = 7;
 /// bits of most are 0.
 pub(crate) fn not_packed(pixels: &Pixels, encoding: &str) -> Option<String> {
     let Pixels::U16(values) = pixels else { return None };
+    if encoding != "kinect-sdk" {
+        return None;
+    }
     let mut pixels_of = [0usize; PLAYER_BITS as usize + 1];
-    for &value in values.iter().filter(|&&value| value != 0 && encoding == "kinect-sdk") {
+    for &value in values.iter().filter(|&&value| value != 0) {
         pixels_of[usize::from(value & PLAYER_BITS)] += 1;
     }
     let valid: usize = pixels_of.iter().sum();
