@@ -463,10 +463,10 @@ fn maps_that_few_pixels_were_measured_of_are_named() {
         (
             "one of 16",
             ["one pixel of 16 was", "bins of 4 x 4"],
-            &(|u: usize, v: usize| u % 4 == 0 && v % 4 == 0) as &dyn Fn(usize, usize) -> bool,
+            &(|u: usize, v: usize| u.is_multiple_of(4) && v.is_multiple_of(4)) as &dyn Fn(usize, usize) -> bool,
         ),
-        ("every third row", ["one pixel of 3 was", "bins of 1 x 3"], &|_: usize, v: usize| v % 3 == 0),
-        ("every second column", ["one pixel of 2 was", "bins of 2 x 1"], &|u: usize, _: usize| u % 2 == 0),
+        ("every third row", ["one pixel of 3 was", "bins of 1 x 3"], &|_: usize, v: usize| v.is_multiple_of(3)),
+        ("every second column", ["one pixel of 2 was", "bins of 2 x 1"], &|u: usize, _: usize| u.is_multiple_of(2)),
         ("a chequered lattice", ["one pixel of 9 was", "bins of 3 x 3"], &|u: usize, v: usize| {
             u % 3 == 1 && v % 3 == 1
         }),
