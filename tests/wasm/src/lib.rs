@@ -7,7 +7,7 @@
 //! A caller asks for memory with [`allocate`], writes the method's name and the pixels there, calls [`detect_u16`] or
 //! [`detect_f32`], reads the labels and gives the memory back with [`free`]. Only 32-bit numbers cross the border.
 
-use depthplanes::{AnyView, DepthView, Detector, ValueKind, Sensor, methods};
+use depthplanes::{AnyView, DepthView, Detector, Sensor, ValueKind, methods};
 use std::alloc::Layout;
 use std::slice::{from_raw_parts, from_raw_parts_mut};
 
