@@ -150,3 +150,24 @@ fn floors_of_recorded_frames_are_as_high_as_measured_by_hand() {
     assert!((number(&tum["floor"]["height_m"]) - 1.52).abs() < 0.03, "{}", tum["floor"]);
     assert!(heights(&tum, "table").iter().any(|height| (height - 0.70).abs() < 0.03));
 }
+
+#[test]
+fn treads_of_recorded_stairs_are_found_with_the_imu_and_without() {
+    let bench = Bench::new("floor_stairs");
+    let camera = ["--intrinsics", "365.3,365.3,254.7,208.6"];
+    let steps = |record: &Value, key: &str| -> Vec<f64> {
+        record["steps"].as_array().unwrap().iter().filter_map(|step| step[key].as_f64()).collect()
+    };
+    // Straight down at the foot of the stair: up is what the accelerometer beside the frame has, turned into the camera's axes.
+    let up = ["--up", "-0.064,-0.202,-0.95"];
+    let Some(down) = of_data(&bench, "stairs_kinect_v2/0000_depth.png", &[&camera[..], &up].concat()) else { return };
+    // Heights of the labelled planes of gt_real/k2stairs_0 above the labelled floor, at their middles.
+    for (height, labelled) in steps(&down, "height_m").iter().zip([0.075, 0.171]) {
+        assert!((height - labelled).abs() < 0.01, "{down}");
+    }
+    assert!(steps(&down, "height_m").len() >= 2, "{down}");
+    let ahead = of_data(&bench, "stairs_kinect_v2/0001_depth.png", &camera).unwrap();
+    let (rises, runs) = (steps(&ahead, "rise_m"), steps(&ahead, "run_m"));
+    assert!(rises.len() >= 4 && rises.iter().all(|rise| (rise - 0.093).abs() < 0.01), "{rises:?}");
+    assert!(runs.iter().all(|run| (run - 0.28).abs() < 0.03), "{runs:?}");
+}
