@@ -31,6 +31,7 @@ pub(crate) use several::{Compare, Eval, Paper};
 pub(crate) enum Command {
     Detect(Box<Detect>),
     Explain(Box<Explain>),
+    Floor(Box<Floor>),
     Inspect { inputs: Inputs, reading: Box<Reading>, json: bool },
     Noise { inputs: Inputs, reading: Box<Reading>, json: bool },
     Score(Score),
@@ -96,6 +97,22 @@ pub(crate) struct Explain {
     pub(crate) json: bool,
 }
 
+/// `depthplanes floor`.
+pub(crate) struct Floor {
+    pub(crate) inputs: Inputs,
+    pub(crate) reading: Reading,
+    pub(crate) method: &'static MethodInfo,
+    pub(crate) parameters: Vec<(&'static str, f64)>,
+    pub(crate) noise_table: Option<PathBuf>,
+    /// Up in camera coordinates, if it is known.
+    pub(crate) up: Option<[f64; 3]>,
+    /// Height of the camera above the floor that it stands on, metres, if it is known.
+    pub(crate) camera_height: Option<f64>,
+    pub(crate) overlay: Option<PathBuf>,
+    pub(crate) json: bool,
+    pub(crate) rows: usize,
+}
+
 /// `depthplanes score`.
 pub(crate) struct Score {
     pub(crate) truth: OsString,
@@ -134,6 +151,7 @@ fn command(matches: &ArgMatches) -> Command {
     match name {
         "detect" => Command::Detect(Box::new(detect(matches))),
         "explain" => Command::Explain(Box::new(explain(matches))),
+        "floor" => Command::Floor(Box::new(floor(matches))),
         "inspect" => Command::Inspect {
             inputs: Inputs::from_matches(matches),
             reading: Box::new(Reading::from_matches(matches)),
@@ -187,6 +205,7 @@ fn program() -> clap::Command {
     let commands = [
         detect_command(),
         explain_command(),
+        floor_command(),
         inspect_command(),
         noise_command(),
         score_command(),
@@ -245,6 +264,15 @@ fn explain_command() -> clap::Command {
         .args(flags::reading())
         .args(one_method())
         .arg(flags::switch("json", "Print one JSON document"))
+}
+
+fn floor_command() -> clap::Command {
+    clap::Command::new("floor")
+        .about("Finds the floor, how the camera stands above it, and what every plane is: wall, table, step, ...")
+        .args(flags::inputs())
+        .args(outputs::floor_flags())
+        .args(flags::reading())
+        .args(one_method())
 }
 
 /// The method, its parameters and the file that states its noise.
@@ -344,6 +372,21 @@ fn explain(matches: &ArgMatches) -> Explain {
         parameters: flags::parameters_given(matches),
         noise_table: path_given(matches, "noise-table"),
         json: matches.get_flag("json"),
+    }
+}
+
+fn floor(matches: &ArgMatches) -> Floor {
+    Floor {
+        inputs: Inputs::from_matches(matches),
+        reading: Reading::from_matches(matches),
+        method: method(matches).expect("it has a default"),
+        parameters: flags::parameters_given(matches),
+        noise_table: path_given(matches, "noise-table"),
+        up: matches.get_one("up").copied(),
+        camera_height: matches.get_one("camera-height").copied(),
+        overlay: path_given(matches, "overlay"),
+        json: matches.get_flag("json"),
+        rows: *matches.get_one("rows").expect("it has a default"),
     }
 }
 

@@ -101,8 +101,9 @@ fn run_in(bench: &Bench, path: &Path) {
 }
 
 /// Documents whose commands are run.
-const WITH_COMMANDS: [&str; 17] = [
+const WITH_COMMANDS: [&str; 18] = [
     "docs/cli.md",
+    "docs/robot.md",
     "docs/ngaf.md",
     "docs/planar.md",
     "docs/planar-sets.md",

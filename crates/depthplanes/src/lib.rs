@@ -27,6 +27,7 @@
 //! | say what the numbers mean, which camera, how noisy | [`Sensor`], [`ValueKind`], [`Intrinsics`], [`noise`] |
 //! | read the answer | [`Detection`], [`Plane`], [`detection::MetricPlane`] |
 //! | make polygons, hulls, rectangles of it | [`outline::Outliner`] |
+//! | find the floor, how the camera stands above it, and what each plane is | [`ground::GroundFinder`] |
 //! | join the pieces of one plane | [`Detector::merge_coplanar`] |
 //! | ask why a pixel has no plane | [`Detector::explain`] |
 //! | hold an answer against a truth | [`metrics`] |
@@ -52,6 +53,7 @@ pub mod detection;
 mod detector;
 pub mod error;
 pub mod explanation;
+pub mod ground;
 mod labelled;
 mod lens;
 pub mod limits;

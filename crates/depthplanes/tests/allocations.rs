@@ -4,6 +4,7 @@
 
 mod naive;
 
+use depthplanes::ground::GroundFinder;
 use depthplanes::methods::Parameters;
 use depthplanes::noise::{EnlargementFinder, RoundingFinder, Space};
 use depthplanes::outline::Outliner;
@@ -170,6 +171,21 @@ fn later_frames_of_planar_allocate_nothing() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn later_grounds_allocate_nothing() {
+    let frames: Vec<_> = ["stairs", "boxes", "corridor", "random:seed=2", "room", "planes3", "random:seed=3"]
+        .map(|scene| format!("{scene}{}sensor=kinect,size=320x240", if scene.contains(':') { "," } else { ":" }))
+        .map(|spec| spec.parse::<Spec>().unwrap().frame().unwrap())
+        .into();
+    let mut detector = Detector::default().sensor(frames[0].sensor);
+    let mut finder = GroundFinder::default();
+    for (number, frame) in frames.iter().enumerate() {
+        let found = detector.detect(frame.view()).unwrap();
+        let (calls, bytes) = allocated(|| assert!(finder.find(frame.view(), found, &frame.sensor).is_ok()));
+        assert!(number == 0 || (calls, bytes) == (0, 0), "frame {number}: {calls} calls, {bytes} bytes");
     }
 }
 

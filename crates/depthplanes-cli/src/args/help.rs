@@ -14,7 +14,7 @@ struct Group {
 
 /// All commands, by who needs them.
 const GROUPS: &[Group] = &[
-    Group { heading: "Find planes", commands: &["detect", "inspect", "explain", "noise", "demo"] },
+    Group { heading: "Find planes", commands: &["detect", "floor", "inspect", "explain", "noise", "demo"] },
     Group { heading: "See what there is", commands: &["presets", "encodings", "formats", "methods", "params"] },
     Group { heading: "Set up", commands: &["completions", "man"] },
     Group {
@@ -62,6 +62,22 @@ const SHORT: &[(&str, &[&str])] = &[
         ],
     ),
     ("explain", &["at", "json", "preset", "intrinsics", "camera", "encoding", "scale", "method", "min-pixels"]),
+    (
+        "floor",
+        &[
+            "up",
+            "camera-height",
+            "overlay",
+            "json",
+            "preset",
+            "intrinsics",
+            "camera",
+            "encoding",
+            "scale",
+            "method",
+            "noise-scale",
+        ],
+    ),
     ("inspect", &["recursive", "json", "preset", "intrinsics", "camera", "encoding", "scale", "raw-size"]),
     ("noise", &["recursive", "json", "preset", "intrinsics", "camera", "encoding", "scale", "raw-size"]),
     (

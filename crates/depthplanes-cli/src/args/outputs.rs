@@ -1,4 +1,4 @@
-//! The flags of `detect` that say what comes out, and how it runs.
+//! The flags of `detect` and `floor` that say what comes out, and how it runs.
 
 use super::flags;
 use clap::{Arg, builder::PossibleValuesParser};
@@ -81,4 +81,29 @@ pub(super) fn running_flags() -> Vec<Arg> {
         flags::count("repeat", "N").help("Measure the detection alone, N times after a warm-up; truest with one job"),
     ];
     all.into_iter().map(|arg| arg.help_heading("Running")).collect()
+}
+
+pub(super) fn floor_flags() -> Vec<Arg> {
+    let ground = [
+        flags::numbers::<3>("up", "X,Y,Z")
+            .long("up")
+            .help("Up in camera coordinates: x right, y down, z ahead; 0,-1,0 of a level camera; estimated without it")
+            .long_help(
+                "Up in camera coordinates (x right, y down, z ahead), of any length: 0,-1,0 of a level camera. It is what an \
+                 accelerometer at rest measures, turned into the camera's axes; of a pose whose world has z up it is the third \
+                 row of the rotation from camera to world. Without it up is estimated from the planes, for a camera that is \
+                 upright to within 60 degrees",
+            ),
+        flags::number("camera-height", "METRES")
+            .long("camera-height")
+            .help("The camera's height, if it is known: of several levels the one nearest to it is the floor, not the lowest"),
+    ];
+    let output = [
+        flags::path("overlay", "FILE")
+            .help("Write a picture (.png): the floor green, obstacles red, drops blue, and where the free floor ends"),
+        flags::switch("json", "Print one JSON document; one line for each of several inputs"),
+        flags::count("rows", "N").default_value("20").help("Planes in the printed table"),
+    ];
+    let under = |heading: &'static str| move |arg: Arg| arg.help_heading(heading);
+    ground.into_iter().map(under("Ground")).chain(output.into_iter().map(under("Output"))).collect()
 }

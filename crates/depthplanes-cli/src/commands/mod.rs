@@ -5,6 +5,7 @@ mod completions;
 mod demo;
 mod detect;
 mod explain;
+mod floor;
 mod inspect;
 mod lists;
 mod man;
@@ -30,6 +31,7 @@ pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
     match command {
         Command::Detect(wanted) => detect::run(wanted, out),
         Command::Explain(wanted) => explain::run(wanted, out),
+        Command::Floor(wanted) => floor::run(wanted, out),
         Command::Inspect { inputs, reading, json } => inspect::run(inputs, reading, *json, out),
         Command::Noise { inputs, reading, json } => noise::run(inputs, reading, *json, out),
         Command::Score(wanted) => score::run(wanted, out),
