@@ -268,7 +268,7 @@ fn explain_command() -> clap::Command {
 
 fn floor_command() -> clap::Command {
     clap::Command::new("floor")
-        .about("Finds the floor, how the camera stands above it, and what every plane is: wall, table, step, ...")
+        .about("Finds the floor, the camera's height and tilt, obstacles, steps, a class of each plane")
         .args(flags::inputs())
         .args(outputs::floor_flags())
         .args(flags::reading())

@@ -74,7 +74,7 @@ fn wrong_use_says_what_is_accepted() {
     for (words, says) in [
         (&["wall.pgm"][..], "`floor` needs planes in metres; state the camera's intrinsics: give --intrinsics"),
         (&["wall.pgm", "--up", "0,0,0"], "`up` is `0,0,0`; accepted: a direction in camera coordinates"),
-        (&["wall.pgm", "--up", "0,1"], "accepted: 3 numbers with commas between; 2 were given"),
+        (&["wall.pgm", "--up", "0,1"], "accepted: 3 numbers with commas between and no blanks; 2 were given"),
         (&["wall.pgm", "--camera-height", "-1"], "`camera-height` is -1; accepted: a finite number of metres above 0"),
         (&["wall.pgm", "--overlay", "a.jpg"], "--overlay a.jpg: accepted: a name that ends in .png"),
         (&["wall.pgm", "wall.pgm", "--overlay", "a.png"], "--overlay names one file, but there are 2 inputs"),
