@@ -268,7 +268,7 @@ fn explain_command() -> clap::Command {
 
 fn floor_command() -> clap::Command {
     clap::Command::new("floor")
-        .about("Finds the floor, the camera's height and tilt, obstacles, steps, a class of each plane")
+        .about("Finds the floor, how the camera stands above it, obstacles, steps, kinds of planes")
         .args(flags::inputs())
         .args(outputs::floor_flags())
         .args(flags::reading())
