@@ -63,7 +63,7 @@ impl Bridge {
     pub(crate) fn join(&mut self, map: Measured<'_>, image: &[u16], grouper: &mut ConnectedComponents, threads: usize) {
         let Bridge { parts, pairs } = self;
         let groups = grouper.groups();
-        for_row_blocks(threads, map.height, ROWS, parts, |part, rows| {
+        let parts = for_row_blocks(threads, map.height, ROWS, parts, |part, rows| {
             vectorised(
                 #[inline(always)]
                 || part.list(rows, map, image, groups),

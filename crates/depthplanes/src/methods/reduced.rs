@@ -178,6 +178,12 @@ pub(crate) struct Pieces {
 }
 
 impl Pieces {
+    /// Makes room for maps of so many pixels.
+    pub(crate) fn reserve(&mut self, area: usize) {
+        reserve_to(&mut self.pairs, area);
+        reserve_to(&mut self.first, usize::from(u16::MAX) + 1);
+    }
+
     /// Joins the groups of the pixels of each label.
     pub(crate) fn join(&mut self, labels: &DepthView<'_, u16>, components: &mut ConnectedComponents) {
         let Pieces { pairs, first } = self;

@@ -29,6 +29,12 @@ pub(crate) struct Spreader {
 }
 
 impl Spreader {
+    /// Makes room for maps of so many pixels.
+    pub(crate) fn reserve(&mut self, area: usize) {
+        reserve_to(&mut self.planes, area.min(u16::MAX.into()));
+        reserve_to(&mut self.around, 9);
+    }
+
     /// Writes the label of each pixel of the map into `image`, 0 for none. `inlier_threshold`: how far from a plane its
     /// pixels may lie, standard deviations.
     #[expect(clippy::too_many_arguments, reason = "a map, what its numbers mean and what was found")]
@@ -42,12 +48,12 @@ impl Spreader {
         inlier_threshold: f64,
         image: &mut Vec<u16>,
     ) {
+        self.reserve(map.area());
         self.fit(map, space, sparse, labels, noise);
         reserve_to(image, map.area());
         image.resize(map.area(), 0);
         let ([columns, rows], validity) = (sparse.size, map.validity());
         let Spreader { planes, around } = self;
-        reserve_to(around, 9);
         for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
             around.clear();
             for near in row.saturating_sub(1)..(row + 2).min(rows) {
@@ -83,7 +89,7 @@ impl Spreader {
         noise: &NoiseModel,
     ) {
         let planes = &mut self.planes;
-        reserve_to(planes, map.area().min(u16::MAX.into()));
+        planes.clear();
         planes.resize(labels.iter().copied().max().unwrap_or(0).into(), LabelPlane::default());
         for (&label, &pixel) in labels.iter().zip(sparse.pixels) {
             if label > 0 && pixel != Sparse::EMPTY {

@@ -63,19 +63,23 @@ impl SparseFinder {
     /// # Ok::<(), depthplanes::Error>(())
     /// ```
     pub fn find<T: Pixel>(&mut self, map: &DepthView<'_, T>) -> Option<Sparse<'_>> {
-        // Room for maps that are sparse, or that nothing was measured of.
+        // Room for maps that are sparse, whichever comes first.
         reserve_to(&mut self.counts, (map.width() + 1) * (map.height() + 1));
+        reserve_to(&mut self.pixels, map.area());
         if is_dense(map) {
             return None;
         }
         self.count(map);
         let size = [map.width(), map.height()];
         let Filled { pixels, in_halves, .. } = self.fill(size, [1, 1])?;
-        let side = self.best_side(size)?;
-        let is_dense = in_halves >= DENSE * pixels;
+        if in_halves < DENSE * pixels {
+            let side = self.best_side(size)?;
+            return (side != [1, 1]).then(|| self.choose(map, side));
+        }
         // Of every second row a tile has two, through which a plane goes whatever they are.
-        let are_lines = |sparse: &Sparse<'_>| sparse.side.contains(&1) && sparse.jitter == 0.0;
-        Some(self.choose(map, side)).filter(|sparse| side != [1, 1] && (!is_dense || are_lines(sparse)))
+        let is_full = |filled: Filled| filled.pixels == (TILE * TILE) as f64 * filled.tiles;
+        let side = [[1, 2], [2, 1]].into_iter().find(|&side| self.fill(size, side).is_some_and(is_full))?;
+        Some(self.choose(map, side)).filter(|sparse| sparse.jitter == 0.0)
     }
 
     fn count<T: Pixel>(&mut self, map: &DepthView<'_, T>) {

@@ -15,6 +15,7 @@ use crate::limits::MAX_PLANES;
 use crate::map::{DepthView, Pixel};
 use crate::noise::NoiseModel;
 use crate::sensor::Sensor;
+use crate::util::memory::parts_of;
 use crate::util::parallel::map_reduce;
 use crate::util::simd::vectorised;
 use std::ops::Range;
@@ -54,7 +55,7 @@ impl PlaneStatistics {
             }
             _ => None,
         };
-        self.each_part(map, runs, threads, |part, runs, room| {
+        let parts = self.each_part(map, runs, threads, |part, runs, room| {
             part.sums.clear(room);
             vectorised(
                 #[inline(always)]
@@ -63,7 +64,7 @@ impl PlaneStatistics {
         });
         self.tallies.clear();
         self.tallies.reserve(MAX_PLANES.min(map.area()));
-        for (label, sums) in self.parts.iter().flat_map(|part| part.sums.each()) {
+        for (label, sums) in self.parts[..parts].iter().flat_map(|part| part.sums.each()) {
             let at = usize::from(label) - 1;
             if at >= self.tallies.len() {
                 self.tallies.resize_with(at + 1, PlaneSums::none);
@@ -74,18 +75,18 @@ impl PlaneStatistics {
     }
 
     /// Calls `work` for each part of the map with the part's runs and how many labels to make room for, on `threads`
-    /// threads: all parts together have room for as many as there can be.
+    /// threads: all parts together have room for as many as there can be. Returns how many parts there are.
     fn each_part<T: Pixel>(
         &mut self,
         map: &DepthView<'_, T>,
         runs: &[LabelledRun],
         threads: usize,
         work: impl Fn(&mut MapPart, &[LabelledRun], usize) + Sync,
-    ) {
-        let ranges = runs_of_parts(runs, [map.width(), map.height()]);
-        self.parts.resize_with(ranges.count(), MapPart::default);
-        let room = MAX_PLANES.min(map.area()).div_ceil(self.parts.len());
-        for (part, runs) in self.parts.iter_mut().zip(runs_of_parts(runs, [map.width(), map.height()])) {
+    ) -> usize {
+        let count = runs_of_parts(runs, [map.width(), map.height()]).count();
+        let parts = parts_of(&mut self.parts, count);
+        let room = MAX_PLANES.min(map.area()).div_ceil(count);
+        for (part, runs) in parts.iter_mut().zip(runs_of_parts(runs, [map.width(), map.height()])) {
             part.runs = runs;
         }
         let work_on = |parts: &mut [MapPart]| {
@@ -94,7 +95,8 @@ impl PlaneStatistics {
                 work(part, runs, room);
             }
         };
-        map_reduce(threads, &mut self.parts[..], work_on, |(), ()| ());
+        map_reduce(threads, parts, work_on, |(), ()| ());
+        count
     }
 
     /// The planes' sums; label 1 is the first.
@@ -185,7 +187,7 @@ impl PlaneStatistics {
         add: impl Fn(&mut Distances, &LabelledRun, &[T], &AffineFit) + Sync,
     ) {
         let tallies = std::mem::take(&mut self.tallies);
-        self.each_part(map, runs, threads, |part, runs, room| {
+        let parts = self.each_part(map, runs, threads, |part, runs, room| {
             part.distances.clear(room);
             vectorised(
                 #[inline(always)]
@@ -202,7 +204,7 @@ impl PlaneStatistics {
         self.distances.reserve(tallies.capacity());
         self.distances.resize(tallies.len(), Distances::default());
         self.tallies = tallies;
-        for (label, distances) in self.parts.iter().flat_map(|part| part.distances.each()) {
+        for (label, distances) in self.parts[..parts].iter().flat_map(|part| part.distances.each()) {
             self.distances[usize::from(label) - 1].merge(distances);
         }
     }

@@ -3,6 +3,7 @@
 //! In: something that can be split between its rows. Out: the results of the parts, put together. Only for work whose
 //! answer does not depend on where it is split.
 
+use super::memory::parts_of;
 use std::ops::Range;
 
 /// Something made of rows.
@@ -125,21 +126,23 @@ impl<T: Send> Rows for NumberedRows<'_, T> {
     }
 }
 
-/// Does the work on `per_part` rows at a time, on `threads` threads; each of these parts has memory of its own.
+/// Does the work on `per_part` rows at a time, on `threads` threads; each of these parts has memory of its own. Returns the
+/// parts that were worked on.
 pub(crate) fn for_row_blocks<P: Default + Send>(
     threads: usize,
     rows: usize,
     per_part: usize,
     parts: &mut Vec<P>,
     work: impl Fn(&mut P, Range<usize>) + Sync,
-) {
-    parts.resize_with(rows.div_ceil(per_part), P::default);
+) -> &mut [P] {
+    let parts = parts_of(parts, rows.div_ceil(per_part));
     let work_on = |some: Numbered<'_, P>| {
         for (number, part) in (some.first..).zip(some.all) {
             work(part, number * per_part..((number + 1) * per_part).min(rows));
         }
     };
-    map_reduce(threads, Numbered { first: 0, all: parts }, work_on, |(), ()| ());
+    map_reduce(threads, Numbered { first: 0, all: &mut *parts }, work_on, |(), ()| ());
+    parts
 }
 
 #[cfg(test)]

@@ -142,6 +142,8 @@ const ROWS_AT_A_TIME: usize = 64;
 pub(super) struct Contacts {
     /// What touches in some rows each.
     parts: Vec<Touching>,
+    /// Parts of this map; the others are of larger ones.
+    used: usize,
     pairs: Vec<[u16; 2]>,
     /// For each label the one that it becomes.
     into: Vec<u16>,
@@ -181,10 +183,11 @@ impl Contacts {
     pub(super) fn list(&mut self, boundary: &Boundary, image: &[u16], threads: usize) {
         // A pixel makes two pairs, with its left and its upper neighbour.
         let per_row = 2 * image.len() / boundary.rows();
-        for_row_blocks(threads, boundary.rows(), ROWS_AT_A_TIME, &mut self.parts, |part, rows| {
+        let used = for_row_blocks(threads, boundary.rows(), ROWS_AT_A_TIME, &mut self.parts, |part, rows| {
             part.prepare(rows.len() * per_row);
             boundary.each(rows, image, |a, b| part.touch(a, b));
         });
+        self.used = used.len();
     }
 
     /// Joins the listed regions in the image, and their sums; with those that touch elsewhere.
@@ -195,9 +198,9 @@ impl Contacts {
         image: &mut [u16],
         threads: usize,
     ) {
-        let Contacts { parts, pairs, into } = self;
+        let Contacts { parts, used, pairs, into } = self;
         reserve_to(pairs, 6 * image.len());
-        parts.iter().for_each(|part| pairs.extend(&part.pairs));
+        parts[..*used].iter().for_each(|part| pairs.extend(&part.pairs));
         elsewhere.for_each(|touching| pairs.extend(&touching.pairs));
         reserve_to(into, image.len());
         into.extend(0..=all.len() as u16);

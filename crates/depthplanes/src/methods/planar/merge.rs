@@ -129,7 +129,7 @@ impl Merger {
     /// Lists the edges of the region adjacency graph, on as many threads.
     pub(super) fn list_edges(&mut self, grid: &Grid, threads: usize) {
         let Merger { edges, parts, .. } = self;
-        for_row_blocks(threads, grid.rows, ROWS, parts, |part, rows| {
+        let parts = for_row_blocks(threads, grid.rows, ROWS, parts, |part, rows| {
             vectorised(
                 #[inline(always)]
                 || part.list(grid, rows),

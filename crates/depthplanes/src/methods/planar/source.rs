@@ -16,7 +16,7 @@ use crate::error::Result;
 use crate::explanation::{Explanation, Suggestion, Verdict};
 use crate::limits::MAX_PLANES;
 use crate::map::{DepthView, Pixel};
-use crate::methods::extraction::{Extraction, STAGES, Wanted};
+use crate::methods::extraction::{STAGES, Wanted};
 use crate::methods::method::{Job, MethodInfo};
 use crate::methods::reduced::{Pieces, Reduced, ReducedFinder, paint};
 use crate::methods::spread::Spreader;
@@ -39,11 +39,21 @@ pub(super) struct Source {
     /// Labels of the source on the whole map.
     image: Vec<u16>,
     spreader: Spreader,
-    extraction: Extraction,
     pieces: Pieces,
 }
 
 impl Source {
+    /// Makes room for the sources of maps of so many pixels, whichever frame is the first that has one.
+    fn reserve(&mut self, area: usize) {
+        let Source { pixels, found, image, spreader, pieces, .. } = self;
+        reserve_to(pixels, area);
+        reserve_to(image, area);
+        reserve_to(&mut found.labels, area);
+        reserve_to(&mut found.planes, area.min(MAX_PLANES));
+        spreader.reserve(area);
+        pieces.reserve(area);
+    }
+
     /// Finds planes in a map, reduced or not.
     ///
     /// # Errors
@@ -55,15 +65,13 @@ impl Source {
         job: &mut Job<'_>,
         out: &mut Detection,
     ) -> Result<()> {
-        let Source { finder, pixels, found, image, spreader, extraction, pieces } = self;
+        self.reserve(map.area());
+        let Source { finder, pixels, found, image, spreader, pieces } = self;
         let Some(reduced) = finder.find(map) else { return runner.planar(*map, job, out, &mut |_, _, _| ()) };
         let Planar { min_pixels, min_area, inlier_threshold, .. } = runner.params;
         if min_area > 0.0 {
             job.sensor.check_metric("min-area")?;
         }
-        // Sources of maps of one size have several.
-        reserve_to(&mut found.labels, map.area());
-        reserve_to(&mut found.planes, map.area().min(MAX_PLANES));
         let mut noise = None;
         let view = reduced.source(map, pixels)?;
         with_source(runner, job, &reduced, |runner, job| {
@@ -80,6 +88,8 @@ impl Source {
             _ => paint(&found.labels, &reduced, map, image)?,
         };
         let wanted = Wanted { min_pixels, min_area, noise: noise.as_ref(), valid_pixels: map.valid_pixels() };
+        // The source is done with it.
+        let extraction = &mut runner.extraction;
         extraction.extract_united(map, &labels, &wanted, |components| pieces.join(&labels, components), job, out)?;
         if let Reduced::Repeated(enlargement) = &reduced {
             errors_of_source(found, labels, enlargement, out);
