@@ -41,7 +41,7 @@ WASM := --manifest-path tests/wasm/Cargo.toml
 say = @printf '\n== %s\n' '$(1)'
 
 .NOTPARALLEL:
-.PHONY: help demo dist try-deb deny test lint fmt format clippy rust-tests rustdoc packages package targets oracles bench bench-planar ablate tables peers results golden stress fuzz clean
+.PHONY: help demo dist try-deb deny test lint fmt format clippy rust-tests rustdoc packages package targets oracles bench bench-planar bench-track ablate tables peers results golden stress fuzz clean
 
 help: ## List the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -98,7 +98,7 @@ package: ## Make the packages of all crates and build each from what is in it
 # The program has the library's name, so its own page is left out.
 rustdoc:
 	$(call say,documentation)
-	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --no-deps --package depthplanes --package depthplanes-io --features depthplanes-io/exr
+	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --no-deps --package depthplanes --package depthplanes-io --package depthplanes-video --features depthplanes-io/exr
 
 targets: ## Check that the library compiles for WebAssembly, 64-bit ARM and 32-bit x86
 	$(call say,other targets)
@@ -111,6 +111,13 @@ oracles: $(VENV)
 bench: $(VENV) ## Measure against cc3d and OpenCV; writes benchmarks/record/MACHINE/DATE.csv
 	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes --examples
 	$(PY) benchmarks/run.py --rounds $(ROUNDS) --record "benchmarks/record/$(MACHINE)/$$(date +%F).csv"
+
+bench-track: ## Time tracking and the ground beside detection on recorded videos; writes benchmarks/record/MACHINE/track-DATE.csv
+	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes-video --examples
+	mkdir -p "benchmarks/record/$(MACHINE)"
+	target/release/examples/bench_track $(ROUNDS) '$(DATA)/video_7scenes' '$(DATA)/video_tsdf_fusion' '$(DATA)/icl_nuim/evolin' \
+		> "benchmarks/record/$(MACHINE)/track.partial"
+	mv "benchmarks/record/$(MACHINE)/track.partial" "benchmarks/record/$(MACHINE)/track-$$(date +%F).csv"
 
 bench-planar: ## Time planar on recorded and synthetic frames, beside OTHER's program if stated; writes benchmarks/record/MACHINE/planar-DATE.csv
 	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes-io --examples

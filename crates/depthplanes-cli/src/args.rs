@@ -10,6 +10,7 @@ mod help;
 mod outputs;
 mod several;
 mod tips;
+mod track;
 
 use crate::failure::{Failure, exit_code};
 use crate::terminal::plain;
@@ -26,6 +27,7 @@ use std::process::ExitCode;
 pub(crate) use clap_complete::Shell;
 pub(crate) use flags::{Inputs, Reading};
 pub(crate) use several::{Compare, Eval, Paper};
+pub(crate) use track::Track;
 
 /// What the user wants.
 pub(crate) enum Command {
@@ -35,6 +37,7 @@ pub(crate) enum Command {
     Inspect { inputs: Inputs, reading: Box<Reading>, json: bool },
     Noise { inputs: Inputs, reading: Box<Reading>, json: bool },
     Score(Score),
+    Track(Box<Track>),
     Eval(Eval),
     Paper(Paper),
     Compare(Box<Compare>),
@@ -163,6 +166,7 @@ fn command(matches: &ArgMatches) -> Command {
             json: matches.get_flag("json"),
         },
         "score" => Command::Score(score(matches)),
+        "track" => Command::Track(Box::new(track::from_matches(matches))),
         "eval" => Command::Eval(several::eval(matches)),
         "paper" => Command::Paper(several::paper(matches)),
         "compare" => Command::Compare(Box::new(several::compare(matches))),
@@ -206,6 +210,7 @@ fn program() -> clap::Command {
         detect_command(),
         explain_command(),
         floor_command(),
+        track::command(),
         inspect_command(),
         noise_command(),
         score_command(),

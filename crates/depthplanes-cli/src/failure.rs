@@ -111,6 +111,16 @@ impl From<depthplanes_io::Error> for Failure {
     }
 }
 
+impl From<depthplanes_video::Error> for Failure {
+    fn from(error: depthplanes_video::Error) -> Self {
+        match error {
+            depthplanes_video::Error::Read(error) => error.into(),
+            depthplanes_video::Error::Library(error) => error.into(),
+            error => Failure::request(error.to_string()),
+        }
+    }
+}
+
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
         let message = error.to_string();

@@ -1,7 +1,7 @@
 //! What the words after a command stand for: files, folders, patterns, standard input, scenes.
 
 use crate::failure::{Failure, Outcome};
-use crate::natural;
+use depthplanes_video::natural;
 use depthplanes_io::formats::{FORMATS, left_out};
 use depthplanes_io::outputs::OUTPUTS;
 use std::collections::BTreeMap;

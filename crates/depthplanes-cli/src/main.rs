@@ -8,7 +8,6 @@ mod folders;
 mod inputs;
 mod load;
 mod measures;
-mod natural;
 mod pairs;
 mod patience;
 mod pool;

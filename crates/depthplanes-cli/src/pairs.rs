@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Outcome, note};
 use crate::inputs::files_in;
-use crate::natural;
+use depthplanes_video::natural;
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};

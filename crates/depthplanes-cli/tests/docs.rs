@@ -101,9 +101,10 @@ fn run_in(bench: &Bench, path: &Path) {
 }
 
 /// Documents whose commands are run.
-const WITH_COMMANDS: [&str; 18] = [
+const WITH_COMMANDS: [&str; 19] = [
     "docs/cli.md",
     "docs/robot.md",
+    "docs/video.md",
     "docs/ngaf.md",
     "docs/planar.md",
     "docs/planar-sets.md",

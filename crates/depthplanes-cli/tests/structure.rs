@@ -84,6 +84,7 @@ fn unsafe_code_stands_in_the_kernels_alone() {
         assert!(name.starts_with("components/kernels/") || name == "util/simd.rs", "{name}");
     }
     assert_eq!(files_with("crates/depthplanes-io/src", &["unsafe "]), [""; 0]);
+    assert_eq!(files_with("crates/depthplanes-video/src", &["unsafe "]), [""; 0]);
     assert_eq!(files_with("crates/depthplanes-cli/src", &["unsafe "]), [""; 0]);
 }
 
@@ -110,7 +111,8 @@ fn the_tests_that_the_architecture_names_exist() {
 
 #[test]
 fn nobody_but_tests_and_benchmarks_asks_for_stages_by_themselves() {
-    for folder in ["crates/depthplanes/src", "crates/depthplanes-io/src", "crates/depthplanes-cli/src"] {
+    for krate in ["depthplanes", "depthplanes-io", "depthplanes-video", "depthplanes-cli"] {
+        let folder = &format!("crates/{krate}/src");
         assert_eq!(files_with(folder, &["::internals"]), [""; 0], "{folder}");
     }
 }

@@ -209,6 +209,9 @@ pub struct MetricPlane {
     /// Covariance of (nx, ny, nz, distance), row by row. The normal's part has rank 2, since a unit vector cannot
     /// change its length.
     pub covariance: [[f64; 4]; 4],
+    /// Share (0..=1) of the covariance by errors that differ from frame to frame, which averaging over frames reduces. The
+    /// rest, from the smooth part of the noise, repeats while the camera stands still. 1 where the noise is not known.
+    pub white_share: f64,
     /// What the covariance rests on.
     pub covariance_from: CovarianceSource,
 }
@@ -217,7 +220,7 @@ impl MetricPlane {
     /// A plane of which only its equation and the mean of its points are known, for detections that were made elsewhere.
     pub fn new(plane: HessianNormalForm, centroid_m: [f64; 3]) -> Self {
         let covariance_from = CovarianceSource::Residuals;
-        MetricPlane { plane, rms_m: 0.0, centroid_m, area_m2: None, covariance: [[0.0; 4]; 4], covariance_from }
+        MetricPlane { plane, rms_m: 0.0, centroid_m, area_m2: None, covariance: [[0.0; 4]; 4], white_share: 1.0, covariance_from }
     }
 }
 

@@ -28,6 +28,7 @@
 //! | read the answer | [`Detection`], [`Plane`], [`detection::MetricPlane`] |
 //! | make polygons, hulls, rectangles of it | [`outline::Outliner`] |
 //! | find the floor, how the camera stands above it, and what each plane is | [`ground::GroundFinder`] |
+//! | keep each plane's identity from frame to frame | [`track::Tracker`] |
 //! | join the pieces of one plane | [`Detector::merge_coplanar`] |
 //! | ask why a pixel has no plane | [`Detector::explain`] |
 //! | hold an answer against a truth | [`metrics`] |
@@ -67,6 +68,7 @@ mod sensor;
 mod statistics;
 #[cfg(test)]
 mod tests;
+pub mod track;
 mod util;
 
 pub use camera::{HessianNormalForm, Intrinsics, ValueKind};

@@ -8,7 +8,8 @@ use depthplanes::ground::GroundFinder;
 use depthplanes::methods::Parameters;
 use depthplanes::noise::{EnlargementFinder, RoundingFinder, Space};
 use depthplanes::outline::Outliner;
-use depthplanes::scene::{ScenePixels, Spec};
+use depthplanes::scene::{ScenePixels, Spec, Walk};
+use depthplanes::track::Tracker;
 use depthplanes::{
     Coplanar, DepthView, Detector, Distortion, DistortionModel, Intrinsics, Ngaf, Pixel, Planar, Sensor, ValueKind,
 };
@@ -185,6 +186,26 @@ fn later_grounds_allocate_nothing() {
         let (calls, bytes) = allocated(|| assert!(finder.find(frame.view(), found, &frame.sensor).is_ok()));
         assert!(number == 0 || (calls, bytes) == (0, 0), "frame {number}: {calls} calls, {bytes} bytes");
     }
+}
+
+/// In steady state: planes that come and go need room for as many as there have been at once.
+#[test]
+fn later_tracks_allocate_nothing() {
+    let walk = Walk::new("boxes:sensor=kinect,size=320x240".parse().unwrap(), 5.0);
+    let frames: Vec<_> = (0..12).map(|index| (walk.frame(index).unwrap(), walk.pose(index).unwrap())).collect();
+    let mut detector = Detector::default().sensor(frames[0].0.sensor);
+    let (mut known, mut estimated) = (Tracker::default(), Tracker::default());
+    let mut ids = 0;
+    for number in 0..96 {
+        let (frame, pose) = &frames[number % frames.len()];
+        let found = detector.detect(frame.view()).unwrap();
+        let (calls, bytes) = allocated(|| {
+            ids += known.track(found, &frame.sensor, Some(pose)).unwrap().ids.len();
+            ids += estimated.track(found, &frame.sensor, None).unwrap().ids.len();
+        });
+        assert!(number < 60 || (calls, bytes) == (0, 0), "frame {number}: {calls} calls, {bytes} bytes");
+    }
+    assert!(ids > 1000, "{ids}");
 }
 
 #[test]

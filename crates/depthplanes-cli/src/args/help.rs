@@ -14,7 +14,7 @@ struct Group {
 
 /// All commands, by who needs them.
 const GROUPS: &[Group] = &[
-    Group { heading: "Find planes", commands: &["detect", "floor", "inspect", "explain", "noise", "demo"] },
+    Group { heading: "Find planes", commands: &["detect", "floor", "track", "inspect", "explain", "noise", "demo"] },
     Group { heading: "See what there is", commands: &["presets", "encodings", "formats", "methods", "params"] },
     Group { heading: "Set up", commands: &["completions", "man"] },
     Group {
@@ -74,6 +74,25 @@ const SHORT: &[(&str, &[&str])] = &[
             "camera",
             "encoding",
             "scale",
+            "method",
+            "noise-scale",
+        ],
+    ),
+    (
+        "track",
+        &[
+            "out",
+            "labels",
+            "overlays",
+            "floor",
+            "live",
+            "frames",
+            "preset",
+            "intrinsics",
+            "camera",
+            "encoding",
+            "scale",
+            "raw-size",
             "method",
             "noise-scale",
         ],

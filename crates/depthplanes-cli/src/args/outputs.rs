@@ -83,8 +83,9 @@ pub(super) fn running_flags() -> Vec<Arg> {
     all.into_iter().map(|arg| arg.help_heading("Running")).collect()
 }
 
-pub(super) fn floor_flags() -> Vec<Arg> {
-    let ground = [
+/// What is known of the ground beforehand.
+pub(super) fn ground_flags() -> [Arg; 2] {
+    [
         flags::numbers::<3>("up", "X,Y,Z")
             .long("up")
             .help("Up in camera coordinates: x right, y down, z ahead; 0,-1,0 of a level camera; estimated without it")
@@ -97,7 +98,10 @@ pub(super) fn floor_flags() -> Vec<Arg> {
         flags::number("camera-height", "METRES")
             .long("camera-height")
             .help("The camera's height, if it is known: of several levels the one nearest to it is the floor, not the lowest"),
-    ];
+    ]
+}
+
+pub(super) fn floor_flags() -> Vec<Arg> {
     let output = [
         flags::path("overlay", "FILE")
             .help("Write a picture (.png): the floor green, obstacles red, drops blue, and where the free floor ends"),
@@ -105,5 +109,5 @@ pub(super) fn floor_flags() -> Vec<Arg> {
         flags::count("rows", "N").default_value("20").help("Planes in the printed table"),
     ];
     let under = |heading: &'static str| move |arg: Arg| arg.help_heading(heading);
-    ground.into_iter().map(under("Ground")).chain(output.into_iter().map(under("Output"))).collect()
+    ground_flags().into_iter().map(under("Ground")).chain(output.into_iter().map(under("Output"))).collect()
 }

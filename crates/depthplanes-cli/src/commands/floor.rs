@@ -3,7 +3,7 @@
 //! In: maps, as `detect` takes them, and what is known of up. Out: a table for people or a JSON record.
 
 mod files;
-mod record;
+pub(super) mod record;
 mod table;
 
 use crate::args::Floor;

@@ -12,6 +12,7 @@ mod man;
 mod next;
 mod noise;
 mod score;
+mod track;
 
 use crate::args::Command;
 use crate::failure::Outcome;
@@ -22,6 +23,7 @@ use std::io::Write;
 pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
     let is_writing = match command {
         Command::Detect(wanted) => wanted.writes_files(),
+        Command::Track(wanted) => wanted.labels.is_some() || wanted.overlays.is_some(),
         Command::Demo { .. } | Command::Compare(_) | Command::Eval(_) | Command::Paper(_) | Command::Man { .. } => true,
         _ => false,
     };
@@ -34,6 +36,7 @@ pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
         Command::Floor(wanted) => floor::run(wanted, out),
         Command::Inspect { inputs, reading, json } => inspect::run(inputs, reading, *json, out),
         Command::Noise { inputs, reading, json } => noise::run(inputs, reading, *json, out),
+        Command::Track(wanted) => track::run(wanted, out),
         Command::Score(wanted) => score::run(wanted, out),
         Command::Compare(wanted) => compare::run(wanted, out),
         Command::Eval(wanted) => crate::eval::run(wanted, out),

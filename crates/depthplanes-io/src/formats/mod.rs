@@ -34,7 +34,7 @@ mod unsupported;
 
 pub use compressed_depth::{inverse_depth_value_kind, quantised_inverse_depth};
 pub use format::{DecodeOptions, Format, Image, Limits};
-pub use raw::raw_types;
+pub use raw::{raw_bytes, raw_types};
 pub(crate) use spread::bytes as bytes_of_channels;
 pub use unsupported::left_out;
 

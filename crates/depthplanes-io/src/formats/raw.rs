@@ -84,6 +84,21 @@ pub fn raw_types() -> impl Iterator<Item = &'static str> {
     TYPES.iter().map(|(name, ..)| *name)
 }
 
+/// Bytes of a headerless map of the stated size and type; without a type it is `uint16`.
+///
+/// # Errors
+/// [`Error::Parameter`] without a size, or for a type that is none of [`raw_types`]; [`Error::Limit`] for too large a map.
+pub fn raw_bytes(options: &DecodeOptions) -> Result<usize> {
+    let Some((width, height)) = options.raw_size else {
+        return Err(Error::parameter("--raw-size", "not given", "WIDTHxHEIGHT of the headerless samples"));
+    };
+    let sample = match &options.raw_type {
+        Some(name) => stated(name)?.1,
+        None => Sample::U16,
+    };
+    Ok(options.limits.area("raw", width as u64, height as u64, sample.bytes())? * sample.bytes())
+}
+
 fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
     let Some((width, height)) = options.raw_size else {
         return Err(Error::parameter("--raw-size", "not given", "WIDTHxHEIGHT of the headerless samples"));

@@ -139,14 +139,14 @@ fn row(plane: &Plane, value_kind: ValueKind) -> Row {
     }
 }
 
-/// Writes the labels that the legend names onto their planes, where there is room.
-pub(super) fn number_planes(picture: &mut Picture, detection: &Detection) {
+/// Writes the names of the planes that a legend lists onto them, where there is room.
+pub(super) fn number_planes(picture: &mut Picture, detection: &Detection, name: impl Fn(u16) -> String) {
     let scale = letter_scale(picture.height);
     let named = planes_named(planes_that_fit(picture.height, scale), detection);
     let anchors = anchors(detection, named, scale);
     let mut written: Vec<Area> = Vec::new();
     for (plane, anchor) in detection.planes[..named].iter().zip(anchors) {
-        let text = plane.label.to_string();
+        let text = name(plane.label);
         let area = Area::around(anchor, &text, scale, picture);
         let small = plane.pixel_count < 3 * area.size[0] * area.size[1];
         if small || written.iter().any(|other| other.touches(&area)) {

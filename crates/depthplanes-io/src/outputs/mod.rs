@@ -41,7 +41,7 @@ pub use mesh::mesh_ply;
 pub use noise::noise_in_words;
 pub use npy::map_npy;
 pub use output::{Output, Report, Writer};
-pub use overlay::overlay_png;
+pub use overlay::{overlay_png, tracked_png};
 pub use picture::grey16_png;
 pub use planes::{CSV_COLUMNS, document as json_document, line as json_line};
 pub use record::SCHEMA;

@@ -4,7 +4,7 @@
 //! With a legend the picture grows to the right; without, it has exactly the map's size. The scene
 //! itself is never covered, but for the small numbers that the legend refers to.
 
-use super::colour::{COLOUR_SHARE, palette};
+use super::colour::{COLOUR_SHARE, colour, palette};
 use super::error::OutputError;
 use super::output::{Output, Report, Writer};
 use super::picture::{Picture, blend};
@@ -53,11 +53,38 @@ pub fn overlay_png<'m>(
     Ok(tinted(map, sensor, found, outlines).png())
 }
 
+/// The overlay of a frame of a video: each plane in the colour of its id, and the ids of the largest ones on them. `ids` has
+/// those of labels 1, 2, .. ([`depthplanes::track::Tracks::ids`]).
+///
+/// # Errors
+/// [`OutputError::Size`] unless the detection is one of a map of that size.
+///
+/// # Panics
+/// If there are fewer ids than planes.
+pub fn tracked_png<'m>(
+    map: impl Into<AnyView<'m>>,
+    sensor: &Sensor,
+    found: &Detection,
+    ids: &[u32],
+) -> Result<Vec<u8>, OutputError> {
+    let map = map.into();
+    if [map.width(), map.height()] != [found.width, found.height] {
+        return Err(OutputError::Size { map: [map.width(), map.height()], found: [found.width, found.height] });
+    }
+    let pixels = shade::greys(map, sensor.value_kind);
+    let mut picture = Picture { width: found.width, height: found.height, pixels };
+    let of_id = |&id: &u32| colour((id.saturating_sub(1) % u32::from(u16::MAX)) as u16 + 1);
+    let palette: Vec<[u8; 3]> = [colour(0)].into_iter().chain(ids.iter().map(of_id)).collect();
+    tint_planes(&mut picture, found, &palette, true);
+    legend::number_planes(&mut picture, found, |label| ids[usize::from(label) - 1].to_string());
+    Ok(picture.png())
+}
+
 fn picture(report: &Report<'_>) -> Result<Picture, OutputError> {
     let Report { frame, detection, outlines, .. } = report;
     let mut picture = tinted(frame.view()?, &frame.sensor, detection, *outlines);
     if report.legend {
-        legend::number_planes(&mut picture, detection);
+        legend::number_planes(&mut picture, detection, |label| label.to_string());
         picture = legend::beside(&picture, detection, frame.sensor.value_kind);
     }
     Ok(picture)
@@ -67,7 +94,7 @@ fn picture(report: &Report<'_>) -> Result<Picture, OutputError> {
 fn tinted(map: AnyView<'_>, sensor: &Sensor, detection: &Detection, outlines: Option<&Outlines>) -> Picture {
     let pixels = shade::greys(map, sensor.value_kind);
     let mut picture = Picture { width: detection.width, height: detection.height, pixels };
-    tint_planes(&mut picture, detection, outlines.is_none());
+    tint_planes(&mut picture, detection, &palette(detection.planes.len()), outlines.is_none());
     if let Some(curved) = &detection.curved {
         hatch_curved(&mut picture, &curved.labels);
     }
@@ -100,8 +127,8 @@ fn hatch_curved(picture: &mut Picture, labels: &[u16]) {
     }
 }
 
-fn tint_planes(picture: &mut Picture, detection: &Detection, borders: bool) {
-    let palette = palette(detection.planes.len());
+/// `palette` has the colours of labels 0, 1, ..
+fn tint_planes(picture: &mut Picture, detection: &Detection, palette: &[[u8; 3]], borders: bool) {
     for v in 0..detection.height {
         for u in 0..detection.width {
             let at = v * detection.width + u;

@@ -41,6 +41,7 @@ mod spec;
 mod staged;
 mod surfaces;
 mod truth;
+mod walk;
 
 pub use crate::util::random::Random;
 pub use catalogue::{SCENES, SceneInfo, find};
@@ -52,3 +53,4 @@ pub use spec::{MAX_FRAME_PIXELS, Spec};
 pub use staged::Staged;
 pub use surfaces::{Place, Scene, Strip, Surface};
 pub use truth::{Truth, TruthPlane};
+pub use walk::Walk;

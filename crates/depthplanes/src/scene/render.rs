@@ -28,9 +28,20 @@ use crate::sensor::Sensor;
 /// # Ok::<(), depthplanes::Error>(())
 /// ```
 pub fn render(scene: &Scene, camera: &Camera, sensor: SensorModel, seed: u64) -> Result<SceneFrame> {
+    render_frame(scene, camera, sensor, seed, None)
+}
+
+/// The same for a frame of a video: `lasting` drives the smooth part of the sensor's error, which its frames share.
+pub(super) fn render_frame(
+    scene: &Scene,
+    camera: &Camera,
+    sensor: SensorModel,
+    seed: u64,
+    lasting: Option<u64>,
+) -> Result<SceneFrame> {
     camera.check()?;
     let seen = cast(scene, camera);
-    let pixels = sensor.pixels(&Exposure { scene, camera, seen: &seen }, seed);
+    let pixels = sensor.pixels(&Exposure { scene, camera, seen: &seen }, seed, lasting);
     let truth = Truth::new(scene, camera, seen);
     let sensor =
         Sensor { value_kind: sensor.value_kind(camera), intrinsics: Some(camera.intrinsics), ..Sensor::default() };

@@ -187,7 +187,9 @@ impl SensorModel {
         }
     }
 
-    pub(super) fn pixels(self, exposure: &Exposure<'_>, seed: u64) -> ScenePixels {
+    /// What the sensor makes of a picture. The smooth part of its error is drawn from `lasting`, if that is given, so that
+    /// frames can share it, all else from `seed`.
+    pub(super) fn pixels(self, exposure: &Exposure<'_>, seed: u64, lasting: Option<u64>) -> ScenePixels {
         let depth_m = &exposure.seen.depth_m;
         // The sensor's draws are not the scene's draws, though they share the seed.
         let mut random = Random::new(seed ^ 0x5E45_0A11_D0DE_CADE);
@@ -195,7 +197,7 @@ impl SensorModel {
             SensorModel::Clean => ScenePixels::F32(depth_m.iter().map(|&z| z as f32).collect()),
             SensorModel::Disparity8 => ScenePixels::U8(disparities(exposure)),
             _ => ScenePixels::U16(match self.depth_camera() {
-                Some(row) => row.pixels(exposure, &mut random),
+                Some(row) => row.pixels(exposure, &mut random, lasting.map(Random::new)),
                 None => depth_m.iter().map(|&z| millimetres(z)).collect(),
             }),
         }

@@ -43,8 +43,9 @@ pub(super) struct Known {
 }
 
 impl Known {
-    /// Covariance of the coefficients in inverse depth; `None` if the noise is 0.
-    pub(super) fn covariance(&self, noise: &NoiseModel) -> Option<Covariance> {
+    /// Covariance of the coefficients in inverse depth, and the share of it that is white: W of all C, the mean over the
+    /// directions, trace(W C^-1) / 3. `None` if the noise is 0.
+    pub(super) fn covariance(&self, noise: &NoiseModel) -> Option<(Covariance, f64)> {
         let fit = &self.fit;
         let (white, of_white) = fit.covariance_by(|q| noise.variance_in(&self.patch, q));
         if of_white <= 0.0 {
@@ -60,7 +61,9 @@ impl Known {
         let of_pixels = if self.smooth_variance(noise) > 0.0 { times.min(WHITE) } else { times };
         let (few, _) = fit.covariance_by_smooth((times - of_pixels) * of_white, FEW);
         let all = |i: usize, j: usize| of_pixels * white[i][j] + few[i][j] + smooth[i][j];
-        Some(std::array::from_fn(|i| std::array::from_fn(|j| all(i, j) * self.slope * self.slope)))
+        let whole: Covariance = std::array::from_fn(|i| std::array::from_fn(|j| all(i, j)));
+        let share = of_pixels * share_of(&white, &whole).unwrap_or(of_pixels.recip());
+        Some((whole.map(|row| row.map(|entry| entry * self.slope * self.slope)), share))
     }
 
     /// Sums of squares of the smooth part: what the residuals show, and what the noise leads to expect. `None` for a
@@ -83,5 +86,31 @@ impl Known {
     fn smooth_variance(&self, noise: &NoiseModel) -> f64 {
         let [a, b] = self.patch.gradient;
         noise.smooth_variance(self.q, a * a + b * b)
+    }
+}
+
+/// trace(A B^-1) / 3 of two covariances; `None` if B has no inverse.
+fn share_of(a: &Covariance, b: &Covariance) -> Option<f64> {
+    // The columns of the inverse times the determinant are cross products of the rows.
+    let cross = |p: [f64; 3], q: [f64; 3]| [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+    let columns = [cross(b[1], b[2]), cross(b[2], b[0]), cross(b[0], b[1])];
+    let dot = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+    let share = (0..3).map(|i| dot(a[i], columns[i])).sum::<f64>() / (3.0 * dot(b[0], columns[0]));
+    share.is_finite().then(|| share.clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::share_of;
+
+    #[test]
+    fn the_share_of_a_covariance_is_a_mean_over_directions() {
+        let whole = [[4.0, 1.0, 0.0], [1.0, 9.0, 2.0], [0.0, 2.0, 16.0]];
+        let half = whole.map(|row| row.map(|entry| entry / 2.0));
+        assert!((share_of(&half, &whole).unwrap() - 0.5).abs() < 1e-12);
+        let diagonal = |a: f64, b: f64, c: f64| [[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]];
+        let share = share_of(&diagonal(1.0, 1.0, 2.0), &diagonal(1.0, 2.0, 8.0)).unwrap();
+        assert!((share - (1.0 + 0.5 + 0.25) / 3.0).abs() < 1e-12);
+        assert_eq!(share_of(&diagonal(1.0, 1.0, 1.0), &diagonal(0.0, 1.0, 1.0)), None);
     }
 }

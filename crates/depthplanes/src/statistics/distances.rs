@@ -127,9 +127,9 @@ impl Distances {
         let plane = hessian_normal_form(&fit, camera)?;
         let n = tally.pixel_count as f64;
         let by_noise = |noise| tally.known(seen.sensor)?.covariance(noise);
-        let (covariance, covariance_from) = match seen.noise.and_then(by_noise) {
-            Some(covariance) => (covariance, CovarianceSource::Noise),
-            None => (fit.covariance(), CovarianceSource::Residuals),
+        let (covariance, white_share, covariance_from) = match seen.noise.and_then(by_noise) {
+            Some((covariance, white_share)) => (covariance, white_share, CovarianceSource::Noise),
+            None => (fit.covariance(), 1.0, CovarianceSource::Residuals),
         };
         let area = self.area / (plane.distance * (camera.fx * camera.fy).abs());
         let metric = MetricPlane {
@@ -138,6 +138,7 @@ impl Distances {
             centroid_m: self.point.map(|sum| sum / n),
             area_m2: Some(area).filter(|area| !self.reaches_infinity && area.is_finite()),
             covariance: metric_covariance(fit.abc, &covariance, camera),
+            white_share,
             covariance_from,
         };
         is_finite(&metric).then_some(metric)

@@ -4,7 +4,7 @@ use depthplanes::ground::{ClassifiedPlane, Floor, Ground, Obstacle, Sector, Step
 use serde_json::{Value, json};
 
 /// The record of one input; `floor` is null where there is none.
-pub(super) fn record(source: &str, ground: &Ground, up: Up) -> Value {
+pub(in crate::commands) fn record(source: &str, ground: &Ground, up: Up) -> Value {
     json!({
         "schema": "depthplanes.floor/1",
         "source": source,

@@ -2,7 +2,7 @@
 
 use super::dataset::{Item, Load, TruthOf};
 use crate::failure::{Failure, Outcome};
-use crate::natural;
+use depthplanes_video::natural;
 use depthplanes::Intrinsics;
 use depthplanes::noise::SensorNoise;
 use depthplanes_io::formats::DecodeOptions;

@@ -3,7 +3,7 @@
 use super::dataset::{Dataset, Item};
 use super::folder::{files, name_of, options, reading, truth};
 use crate::failure::{Failure, Outcome};
-use crate::natural;
+use depthplanes_video::natural;
 use std::path::{Path, PathBuf};
 
 pub(super) const DATASET: Dataset = Dataset {

@@ -230,7 +230,8 @@ fn errors_of_source(found: &Detection, labels: DepthView<'_, u16>, enlargement: 
         let of_source = place.and_then(|u| found.planes.get(usize::from(labels.row(top)[u]).checked_sub(1)?));
         match of_source.and_then(|plane| plane.metric.as_ref()).filter(|_| !parts_of(plane.label)) {
             Some(right) => {
-                (metric.covariance, metric.covariance_from) = (right.covariance, right.covariance_from);
+                (metric.covariance, metric.white_share, metric.covariance_from) =
+                    (right.covariance, right.white_share, right.covariance_from);
             }
             None => widen(&mut metric.covariance, x * y),
         }

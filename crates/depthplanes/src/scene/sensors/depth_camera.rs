@@ -42,12 +42,15 @@ pub(super) struct DepthCamera {
 }
 
 impl DepthCamera {
-    /// `width * height` values.
-    pub(super) fn pixels(&self, exposure: &Exposure<'_>, random: &mut Random) -> Vec<u16> {
+    /// `width * height` values; the smooth part of the error is drawn from `lasting`, if that is given.
+    pub(super) fn pixels(&self, exposure: &Exposure<'_>, random: &mut Random, lasting: Option<Random>) -> Vec<u16> {
         let (width, height) = (exposure.camera.width, exposure.camera.height);
         let hidden = self.shadow.map(|shadow| exposure.hidden_from_right(shadow.baseline_m, shadow.bounded));
         let edges = self.edges.drawn(exposure, random);
-        let mut error = self.error.drawn(exposure.camera, random);
+        let mut error = match lasting {
+            Some(mut lasting) => self.error.drawn(exposure.camera, &mut lasting),
+            None => self.error.drawn(exposure.camera, random),
+        };
         let range_m = self.range_m[0]..=self.range_m[1];
         let mut pixels = Vec::with_capacity(width * height);
         for v in 0..height {

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 /// Compares names piece by piece, runs of digits as numbers.
-pub(crate) fn compare(a: &str, b: &str) -> Ordering {
+pub fn compare(a: &str, b: &str) -> Ordering {
     pieces(a).cmp(pieces(b)).then_with(|| a.cmp(b))
 }
 

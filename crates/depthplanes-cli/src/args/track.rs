@@ -1,0 +1,80 @@
+//! `depthplanes track`: its flags and what they mean.
+
+use super::flags::{self, Reading, path_given};
+use super::{method, one_method, outputs};
+use clap::{Arg, ArgMatches, Command};
+use depthplanes::methods::MethodInfo;
+use std::path::PathBuf;
+
+/// What is wanted of a video.
+pub(crate) struct Track {
+    pub(crate) source: String,
+    pub(crate) reading: Reading,
+    pub(crate) method: &'static MethodInfo,
+    pub(crate) parameters: Vec<(&'static str, f64)>,
+    pub(crate) noise_table: Option<PathBuf>,
+    /// The file of a JSON line for each frame; `-` for standard output.
+    pub(crate) out: Option<PathBuf>,
+    /// The folder of label images.
+    pub(crate) labels: Option<PathBuf>,
+    /// The folder of pictures.
+    pub(crate) overlays: Option<PathBuf>,
+    /// Whether the ground is wanted as well.
+    pub(crate) floor: bool,
+    pub(crate) up: Option<[f64; 3]>,
+    pub(crate) camera_height: Option<f64>,
+    /// Whether the newest frames are wanted, and others dropped.
+    pub(crate) live: bool,
+    /// The most frames that are read.
+    pub(crate) frames: Option<u64>,
+    pub(crate) kept_frames: Option<u32>,
+    pub(crate) ignore_poses: bool,
+}
+
+pub(super) fn command() -> Command {
+    let source = Arg::new("source").value_name("SOURCE").required(true).help(
+        "A folder of maps, of TUM RGB-D or of 7-Scenes; - for raw frames on standard input; scene:SPEC for a synthetic camera",
+    );
+    let output = [
+        flags::path("out", "FILE").help("Write a JSON line for each frame (.jsonl, or - for standard output)"),
+        flags::path("labels", "DIR").help("Write a label image for each frame into this folder: pixels have their plane's id"),
+        flags::path("overlays", "DIR").help("Write a picture for each frame into this folder; with --floor of the ground"),
+        flags::switch("floor", "Find the floor, obstacles and steps of each frame too; they go into its line"),
+    ];
+    let running = [
+        flags::switch("live", "Drop frames rather than fall behind: the newest ones are wanted"),
+        flags::count("frames", "N").help("Stop after so many frames"),
+        flags::count("kept-frames", "N").help("Frames for which a plane that is not seen keeps its id [default: 30]"),
+        flags::switch("ignore-poses", "Estimate how the camera moves even where the source says it"),
+    ];
+    let under = |heading: &'static str| move |arg: Arg| arg.help_heading(heading);
+    Command::new("track")
+        .about("Follows planes through depth video: lasting ids, floor and obstacles frame by frame")
+        .arg(source)
+        .args(output.map(under("Output")))
+        .args(outputs::ground_flags().map(under("Ground")))
+        .args(flags::reading())
+        .args(one_method())
+        .args(running.map(under("Running")))
+}
+
+pub(super) fn from_matches(matches: &ArgMatches) -> Track {
+    let count = |id| matches.get_one::<usize>(id).copied();
+    Track {
+        source: matches.get_one::<String>("source").cloned().expect("it is required"),
+        reading: Reading::from_matches(matches),
+        method: method(matches).expect("it has a default"),
+        parameters: flags::parameters_given(matches),
+        noise_table: path_given(matches, "noise-table"),
+        out: path_given(matches, "out"),
+        labels: path_given(matches, "labels"),
+        overlays: path_given(matches, "overlays"),
+        floor: matches.get_flag("floor"),
+        up: matches.get_one("up").copied(),
+        camera_height: matches.get_one("camera-height").copied(),
+        live: matches.get_flag("live"),
+        frames: count("frames").map(|frames| frames as u64),
+        kept_frames: count("kept-frames").map(|frames| frames as u32),
+        ignore_poses: matches.get_flag("ignore-poses"),
+    }
+}

@@ -1,0 +1,58 @@
+//! What a person should know of a source while it runs: sizes that change, time that jumps, notes on its maps.
+
+use crate::failure::note;
+use depthplanes_video::VideoFrame;
+use std::collections::BTreeSet;
+
+/// Times the usual step from which on time jumps.
+const JUMP: f64 = 10.0;
+/// Notes of one kind that are said; more are counted.
+const MOST: u64 = 5;
+
+/// Looks at one frame after the other.
+#[derive(Default)]
+pub(super) struct Watch {
+    size: Option<[usize; 2]>,
+    time_s: Option<f64>,
+    step_s: Option<f64>,
+    jumps: u64,
+    said: BTreeSet<String>,
+}
+
+impl Watch {
+    pub(super) fn look(&mut self, frame: &VideoFrame) {
+        let (name, size) = (&frame.name, [frame.frame.width, frame.frame.height]);
+        if let Some([width, height]) = self.size.replace(size).filter(|before| *before != size) {
+            note(&format!("{name}: {} x {} pixels, before {width} x {height}: all planes are new", size[0], size[1]));
+        }
+        for warning in &frame.frame.warnings {
+            if (self.said.len() as u64) < MOST && self.said.insert(warning.clone()) {
+                note(&format!("{name}: {warning}"));
+            }
+        }
+        let Some(now) = frame.time_s else { return };
+        if let Some(before) = self.time_s.replace(now) {
+            self.step(name, now - before);
+        }
+    }
+
+    fn step(&mut self, name: &str, step: f64) {
+        let is_odd = step <= 0.0 || self.step_s.is_some_and(|usual| step > JUMP * usual);
+        if !is_odd {
+            self.step_s = Some(self.step_s.map_or(step, |usual| usual + 0.1 * (step - usual)));
+            return;
+        }
+        self.jumps += 1;
+        if self.jumps <= MOST {
+            let how = if step <= 0.0 { "goes back" } else { "jumps" };
+            note(&format!("{name}: time {how} by {:.3} s", step.abs()));
+        }
+    }
+
+    /// Says how much was not said.
+    pub(super) fn end(&self) {
+        if self.jumps > MOST {
+            note(&format!("time jumped {} more times", self.jumps - MOST));
+        }
+    }
+}

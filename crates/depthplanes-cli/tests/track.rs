@@ -1,0 +1,182 @@
+//! `depthplanes track`: lines, label images and pictures of videos, whole and broken ones.
+
+mod support;
+
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Write;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+use support::{Bench, data, two_planes};
+
+fn lines(text: &str) -> Vec<Value> {
+    text.lines().map(|line| serde_json::from_str(line).unwrap_or_else(|error| panic!("{error}: {line}"))).collect()
+}
+
+fn ids(line: &Value) -> Vec<u64> {
+    line["planes"].as_array().unwrap().iter().map(|plane| plane["id"].as_u64().unwrap()).collect()
+}
+
+const SCENE: &str = "scene:boxes:size=160x120,frames=4";
+
+#[test]
+fn each_frame_is_a_line_a_label_image_and_a_picture() {
+    let bench = Bench::new("track_outputs");
+    let out = bench.run(&["track", SCENE, "--out", "t.jsonl", "--labels", "labels", "--overlays", "pictures"]).ok();
+    assert!(out.starts_with("id  frames  first  last  mean pixels"), "{out}");
+    let lines = lines(&String::from_utf8(bench.read("t.jsonl")).unwrap());
+    assert_eq!(lines.len(), 4);
+    for (index, line) in lines.iter().enumerate() {
+        assert_eq!((&line["schema"], &line["index"]), (&"depthplanes.track/1".into(), &index.into()));
+        assert!((line["time_s"].as_f64().unwrap() - index as f64 / 30.0).abs() < 1e-9 && line["pose"].is_object());
+        let plane = &line["planes"][0];
+        for key in ["id", "label", "state", "age", "pixel_count", "normal", "distance_m", "covariance", "area_m2"] {
+            assert!(!plane[key].is_null(), "{key}: {plane}");
+        }
+        // The pixels of the label image are those of the line, under the ids.
+        let mut decoder = image(&bench.read(&format!("labels/{index:06}.png")));
+        let labelled = line["planes"].as_array().unwrap().iter();
+        for (id, count) in labelled.map(|plane| (plane["id"].as_u64().unwrap(), plane["pixel_count"].as_u64().unwrap())) {
+            assert_eq!(decoder.remove(&id), Some(count), "{id}");
+        }
+        decoder.remove(&0);
+        assert!(decoder.is_empty(), "{decoder:?}");
+        assert_eq!(&bench.read(&format!("pictures/{index:06}.png"))[1..4], b"PNG");
+    }
+    let kept: BTreeSet<u64> = ids(&lines[0]).into_iter().filter(|id| ids(&lines[3]).contains(id)).collect();
+    assert!(kept.len() >= 3, "{lines:?}");
+    let streamed = bench.run(&["track", SCENE, "--out", "-"]).ok();
+    assert_eq!(streamed.as_bytes(), bench.read("t.jsonl"), "the same source gives the same lines");
+}
+
+/// How often each value occurs in a 16-bit grey PNG, by the program's own reader.
+fn image(png: &[u8]) -> BTreeMap<u64, u64> {
+    let labels = depthplanes_io::labels::decode_labels(png, "labels.png", &Default::default()).unwrap();
+    let mut counts = BTreeMap::new();
+    labels.labels.iter().for_each(|&label| *counts.entry(u64::from(label)).or_default() += 1);
+    counts
+}
+
+#[test]
+fn the_ground_is_in_the_lines_if_it_is_wanted() {
+    let bench = Bench::new("track_floor");
+    let out = bench.run(&["track", "scene:corridor:size=320x240,frames=3", "--floor", "--out", "-"]).ok();
+    for line in lines(&out) {
+        let height = line["ground"]["floor"]["height_m"].as_f64().unwrap();
+        assert!((height - 1.45).abs() < 0.15, "{line}");
+        assert!(line["ground"]["sectors"].as_array().is_some_and(|sectors| !sectors.is_empty()));
+    }
+    assert!(lines(&bench.run(&["track", SCENE, "--out", "-"]).ok())[0].get("ground").is_none());
+}
+
+#[test]
+fn a_broken_frame_is_said_and_survived_and_so_are_other_sizes_and_times() {
+    let bench = Bench::new("track_broken");
+    std::fs::create_dir(bench.folder.join("video")).unwrap();
+    for (name, near) in [("1580908150200", 1000), ("1580908150233", 1001), ("1580908150266", 1002), ("1580908159000", 1003)] {
+        bench.write(&format!("video/{name}.pgm"), &two_planes(near));
+    }
+    bench.write("video/1580908150300.pgm", b"P5 32 24 65535\nshort");
+    bench.write("video/1580908159033.pgm", &[b"P5 16 16 65535\n".as_slice(), &[4; 512]].concat());
+    let ran = bench.run(&["track", "video", "--out", "-", "--encoding", "millimetre", "--min-pixels", "50"]);
+    assert_eq!(ran.code, Some(2), "{ran:?}");
+    let lines = lines(&ran.out);
+    assert_eq!(lines.len(), 6);
+    assert!(lines[3]["error"].as_str().unwrap().contains("1580908150300.pgm"), "{}", lines[3]);
+    assert_eq!((ids(&lines[0]), ids(&lines[4])), (vec![1, 2], vec![1, 2]), "{}", ran.out);
+    for said in ["time jumps by 8.7", "16 x 16 pixels, before 32 x 24", "1 frames failed; the others are done"] {
+        assert!(ran.err.contains(said), "{said}: {}", ran.err);
+    }
+}
+
+#[test]
+fn raw_frames_come_from_a_pipe_and_an_end_in_the_middle_is_said() {
+    let bench = Bench::new("track_raw");
+    let words = ["track", "-", "--raw-size", "32x24", "--encoding", "millimetre", "--min-pixels", "50", "--out", "-"];
+    let mut child = bench.command().args(words).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let frame: Vec<u8> = (0..32 * 24).flat_map(|at| (if at % 32 < 16 { 1000u16 } else { 1500 }).to_le_bytes()).collect();
+    let mut pipe = child.stdin.take().unwrap();
+    (0..3).for_each(|_| pipe.write_all(&frame).unwrap());
+    pipe.write_all(&frame[..500]).unwrap();
+    drop(pipe);
+    let ran = child.wait_with_output().unwrap();
+    let (out, err) = (String::from_utf8(ran.stdout).unwrap(), String::from_utf8(ran.stderr).unwrap());
+    assert_eq!(lines(&out).iter().take(3).map(ids).collect::<Vec<_>>(), vec![vec![1, 2]; 3], "{err}");
+    assert!(err.contains("500 of 1536 bytes") && ran.status.code() == Some(2), "{err}");
+}
+
+#[test]
+fn what_ends_the_program_leaves_whole_lines() {
+    let bench = Bench::new("track_killed");
+    let words = ["track", "scene:boxes:size=64x48,frames=1000000", "--out", "t.jsonl"];
+    let mut child = bench.command().args(words).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let start = Instant::now();
+    let text = || std::fs::read_to_string(bench.folder.join("t.jsonl")).unwrap_or_default();
+    while text().lines().count() < 20 && start.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap(); // SIGKILL
+    child.wait().unwrap();
+    let text = text();
+    let whole = &text[..=text.rfind('\n').unwrap()];
+    let lines = lines(whole);
+    assert!(lines.len() >= 20, "{}", lines.len());
+    assert!(lines.iter().enumerate().all(|(index, line)| line["index"] == index));
+}
+
+#[test]
+fn live_drops_frames_rather_than_falling_behind() {
+    let bench = Bench::new("track_live");
+    let words = ["track", "-", "--raw-size", "32x24", "--encoding", "millimetre", "--live", "--out", "-"];
+    let mut child = bench.command().args(words).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut pipe = child.stdin.take().unwrap();
+    // A reader that does not read: nothing may pile up before it.
+    pipe.write_all(&vec![4u8; 32 * 24 * 2 * 3000]).unwrap();
+    drop(pipe);
+    let ran = child.wait_with_output().unwrap();
+    let (out, err) = (String::from_utf8(ran.stdout).unwrap(), String::from_utf8(ran.stderr).unwrap());
+    let lines = lines(&out);
+    let dropped = lines.last().unwrap()["dropped"].as_u64().unwrap();
+    assert_eq!(lines.len() as u64 + dropped, 3000, "{err}");
+    assert_eq!(lines.last().unwrap()["index"], 2999, "the newest frame is there");
+    assert_eq!(dropped > 0, err.contains("frames were dropped"), "{err}");
+}
+
+#[test]
+fn wrong_words_are_refused_before_anything_is_written() {
+    let bench = Bench::new("track_wrong");
+    for (words, said) in [
+        (&["nowhere"][..], "nowhere: there is no such file or folder"),
+        (&["-"], "--raw-size"),
+        (&[SCENE, "--method", "ngaf", "--noise-scale", "2"], "has no parameter"),
+        (&[SCENE, "--camera-height", "-1", "--floor"], "camera-height"),
+    ] {
+        let error = bench.run(&[&["track"], words, &["--out", "t.jsonl"]].concat()).fails(2);
+        assert!(error.contains(said), "{error}");
+        assert!(bench.names().is_empty(), "{:?}", bench.names());
+    }
+}
+
+/// Ids of the recorded videos by the frames in which their plane has at least so many pixels.
+fn frames_of_ids(lines: &[Value], least: u64) -> BTreeMap<u64, usize> {
+    let mut frames = BTreeMap::new();
+    for plane in lines.iter().flat_map(|line| line["planes"].as_array().unwrap()) {
+        if plane["pixel_count"].as_u64().unwrap() >= least {
+            *frames.entry(plane["id"].as_u64().unwrap()).or_default() += 1;
+        }
+    }
+    frames
+}
+
+#[test]
+fn large_planes_of_recorded_videos_keep_one_id() {
+    let bench = Bench::new("track_recorded");
+    let Some(data) = data() else { return };
+    for (folder, whole, others) in [("video_7scenes", 7, 4), ("video_tsdf_fusion", 2, 12)] {
+        let out = bench.run(&["track", data.join(folder).to_str().unwrap(), "--out", "-"]).ok();
+        let lines = lines(&out);
+        let frames = frames_of_ids(&lines, 5000);
+        let all = frames.values().filter(|&&count| count == lines.len()).count();
+        assert!(all >= whole && frames.len() - all <= others, "{folder}, {} frames: {frames:?}", lines.len());
+    }
+}

@@ -1,0 +1,51 @@
+//! 7-Scenes, and others of its layout: `NAME.depth.png` with `NAME.pose.txt`, camera to world, beside it.
+
+use super::files::{Entry, Files, PoseOf, names_in};
+use crate::error::Result;
+use crate::source::{Source, SourceInfo, SourceOptions};
+use depthplanes::Intrinsics;
+use depthplanes_io::camera_file::read_camera;
+use std::path::Path;
+
+pub(super) const SEVEN_SCENES: SourceInfo = SourceInfo {
+    name: "7scenes",
+    about: "a folder of NAME.depth.png with NAME.pose.txt and perhaps camera-intrinsics.txt",
+    is: |word| depth_names(Path::new(word)).is_ok_and(|names| !names.is_empty()),
+    open,
+};
+
+const DEPTH: &str = ".depth.png";
+
+/// What the pages of 7-Scenes state of its depth camera.
+const CAMERA: [f64; 4] = [585.0, 585.0, 320.0, 240.0];
+/// The value that means missing there.
+const MISSING: f64 = 65_535.0;
+
+fn open(word: &str, options: &SourceOptions) -> Result<Box<dyn Source>> {
+    let folder = Path::new(word);
+    let entry = |name: String| {
+        let pose = folder.join(name.replace(DEPTH, ".pose.txt"));
+        let pose = if pose.is_file() { PoseOf::File(pose) } else { PoseOf::Unknown };
+        Entry { path: folder.join(name), time_s: None, pose }
+    };
+    let entries = depth_names(folder)?.into_iter().map(entry).collect();
+    let mut read = options.read.clone();
+    if read.intrinsics.is_none() && read.camera_file.is_none() && read.preset.is_none() {
+        let file = folder.join("camera-intrinsics.txt");
+        if file.is_file() {
+            read = read.camera(&read_camera(&file)?);
+        } else {
+            let [fx, fy, cx, cy] = CAMERA;
+            read.intrinsics = Some(Intrinsics::new(fx, fy, cx, cy)?);
+        }
+    }
+    if read.encoding.is_none() && read.preset.is_none() {
+        read.encoding = Some("millimetre".into());
+    }
+    read.missing = read.missing.or(Some(MISSING));
+    Ok(Box::new(Files::new(entries, read)))
+}
+
+fn depth_names(folder: &Path) -> Result<Vec<String>> {
+    Ok(names_in(folder)?.into_iter().filter(|name| name.ends_with(DEPTH)).collect())
+}

@@ -1,0 +1,139 @@
+//! Where in the picture each track was last seen, on a lattice of pixels, and what is there now.
+
+use super::pose::Motion;
+use crate::camera::{HessianNormalForm, Intrinsics};
+use crate::detection::Detection;
+use std::ops::Range;
+
+/// Pixels from one point of the lattice to the next, along both axes: the smallest planes have six points.
+pub(super) const STEP: usize = 4;
+
+/// Points of tracks, track by track.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Field {
+    /// (u, v), pixels; not a number where a point went behind the camera.
+    points: Vec<[f32; 2]>,
+    /// The points of each track.
+    ranges: Vec<Range<usize>>,
+    /// Memory for the next field.
+    next: (Vec<[f32; 2]>, Vec<Range<usize>>),
+    /// How many points of a track have each label; 0 beside those in `touched`.
+    counts: Vec<u32>,
+    touched: Vec<u16>,
+}
+
+/// How many points of a track have a label now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Overlap {
+    pub(super) track: usize,
+    pub(super) label: u16,
+    pub(super) points: u32,
+}
+
+impl Field {
+    /// Forgets where the tracks were: pictures of another size are not compared.
+    pub(super) fn forget(&mut self) {
+        self.points.clear();
+        self.ranges.iter_mut().for_each(|range| *range = 0..0);
+    }
+
+    /// How many points a track has.
+    pub(super) fn points_of(&self, track: usize) -> u32 {
+        self.ranges[track].len() as u32
+    }
+
+    /// Moves the points of a track as the camera moved, each with the plane it is on: by the homography
+    /// K (R - t n^T / d) K^-1 of the plane n . X + d = 0 (Hartley and Zisserman, *Multiple View Geometry*, result 13.1).
+    pub(super) fn shift(&mut self, track: usize, motion: &Motion, plane: &HessianNormalForm, camera: &Intrinsics) {
+        let Motion { rotation, translation_m } = motion;
+        let rows: [[f32; 3]; 3] = std::array::from_fn(|i| {
+            let [a, b, c] =
+                [0, 1, 2].map(|j| rotation[i][j] - translation_m[i] * plane.normal[j] / plane.distance);
+            // Of the pixel (u, v, 1) instead of the ray ((u - cx) / fx, (v - cy) / fy, 1).
+            let [a, b] = [a / camera.fx, b / camera.fy];
+            [a, b, c - a * camera.cx - b * camera.cy].map(|entry| entry as f32)
+        });
+        let [fx, fy, cx, cy] = [camera.fx, camera.fy, camera.cx, camera.cy].map(|number| number as f32);
+        for point in &mut self.points[self.ranges[track].clone()] {
+            let [u, v] = *point;
+            let [x, y, z] = rows.map(|[a, b, c]| a * u + b * v + c);
+            let is_ahead = z > 0.0;
+            let moved = [fx * (x / z) + cx, fy * (y / z) + cy];
+            *point = if is_ahead { moved } else { [f32::NAN; 2] };
+        }
+    }
+
+    /// Counts which labels the points have now; by track, then by label.
+    pub(super) fn overlaps(&mut self, found: &Detection, overlaps: &mut Vec<Overlap>) {
+        overlaps.clear();
+        self.counts.resize(found.planes.len() + 1, 0);
+        let (width, height) = (found.width as f32, found.height as f32);
+        for track in 0..self.ranges.len() {
+            for &[u, v] in &self.points[self.ranges[track].clone()] {
+                let [u, v] = [u + 0.5, v + 0.5]; // to the nearest pixel
+                if !(u >= 0.0 && v >= 0.0 && u < width && v < height) {
+                    continue;
+                }
+                let label = found.labels[v as usize * found.width + u as usize];
+                let count = &mut self.counts[usize::from(label)];
+                if *count == 0 {
+                    self.touched.push(label);
+                }
+                *count += 1;
+            }
+            self.touched.sort_unstable();
+            for label in self.touched.drain(..) {
+                let points = std::mem::take(&mut self.counts[usize::from(label)]);
+                if label != 0 {
+                    overlaps.push(Overlap { track, label, points });
+                }
+            }
+        }
+    }
+
+    /// The points of this frame's tracks: those of the plane that `label_of` gives, or, where it gives none, the points that
+    /// the track had under its former number `old_of`. Every label is that of one track.
+    pub(super) fn renew(
+        &mut self,
+        found: &Detection,
+        tracks: usize,
+        label_of: impl Fn(usize) -> Option<u16>,
+        old_of: impl Fn(usize) -> Option<usize>,
+    ) {
+        let (points, ranges) = &mut self.next;
+        points.clear();
+        ranges.clear();
+        let lattice = || {
+            let rows = (STEP / 2..found.height).step_by(STEP);
+            rows.flat_map(|v| {
+                let row = &found.labels[v * found.width..(v + 1) * found.width];
+                (STEP / 2..found.width).step_by(STEP).map(move |u| (u, v, row[u]))
+            })
+        };
+        // First how many points each label has, then where its next point goes.
+        self.counts.resize(found.planes.len() + 1, 0);
+        lattice().for_each(|(_, _, label)| self.counts[usize::from(label)] += 1);
+        for track in 0..tracks {
+            let start = points.len();
+            match (label_of(track), old_of(track)) {
+                (Some(label), _) => {
+                    let count = std::mem::replace(&mut self.counts[usize::from(label)], start as u32);
+                    points.resize(start + count as usize, [f32::NAN; 2]);
+                }
+                (None, Some(old)) => points.extend_from_slice(&self.points[self.ranges[old].clone()]),
+                (None, None) => (),
+            }
+            ranges.push(start..points.len());
+        }
+        for (u, v, label) in lattice() {
+            let place = &mut self.counts[usize::from(label)];
+            if label != 0 {
+                points[*place as usize] = [u as f32, v as f32];
+                *place += 1;
+            }
+        }
+        self.counts.fill(0);
+        std::mem::swap(&mut self.points, &mut self.next.0);
+        std::mem::swap(&mut self.ranges, &mut self.next.1);
+    }
+}
