@@ -1,9 +1,9 @@
 //! What the words after a command stand for: files, folders, patterns, standard input, scenes.
 
 use crate::failure::{Failure, Outcome};
-use depthplanes_video::natural;
 use depthplanes_io::formats::{FORMATS, left_out};
 use depthplanes_io::outputs::OUTPUTS;
+use depthplanes_video::natural;
 use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};

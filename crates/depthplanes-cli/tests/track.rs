@@ -36,7 +36,8 @@ fn each_frame_is_a_line_a_label_image_and_a_picture() {
         // The pixels of the label image are those of the line, under the ids.
         let mut decoder = image(&bench.read(&format!("labels/{index:06}.png")));
         let labelled = line["planes"].as_array().unwrap().iter();
-        for (id, count) in labelled.map(|plane| (plane["id"].as_u64().unwrap(), plane["pixel_count"].as_u64().unwrap())) {
+        for (id, count) in labelled.map(|plane| (plane["id"].as_u64().unwrap(), plane["pixel_count"].as_u64().unwrap()))
+        {
             assert_eq!(decoder.remove(&id), Some(count), "{id}");
         }
         decoder.remove(&0);
@@ -73,7 +74,9 @@ fn the_ground_is_in_the_lines_if_it_is_wanted() {
 fn a_broken_frame_is_said_and_survived_and_so_are_other_sizes_and_times() {
     let bench = Bench::new("track_broken");
     std::fs::create_dir(bench.folder.join("video")).unwrap();
-    for (name, near) in [("1580908150200", 1000), ("1580908150233", 1001), ("1580908150266", 1002), ("1580908159000", 1003)] {
+    for (name, near) in
+        [("1580908150200", 1000), ("1580908150233", 1001), ("1580908150266", 1002), ("1580908159000", 1003)]
+    {
         bench.write(&format!("video/{name}.pgm"), &two_planes(near));
     }
     bench.write("video/1580908150300.pgm", b"P5 32 24 65535\nshort");
@@ -93,8 +96,16 @@ fn a_broken_frame_is_said_and_survived_and_so_are_other_sizes_and_times() {
 fn raw_frames_come_from_a_pipe_and_an_end_in_the_middle_is_said() {
     let bench = Bench::new("track_raw");
     let words = ["track", "-", "--raw-size", "32x24", "--encoding", "millimetre", "--min-pixels", "50", "--out", "-"];
-    let mut child = bench.command().args(words).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let frame: Vec<u8> = (0..32 * 24).flat_map(|at| (if at % 32 < 16 { 1000u16 } else { 1500 }).to_le_bytes()).collect();
+    let mut child = bench
+        .command()
+        .args(words)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let frame: Vec<u8> =
+        (0..32 * 24).flat_map(|at| (if at % 32 < 16 { 1000u16 } else { 1500 }).to_le_bytes()).collect();
     let mut pipe = child.stdin.take().unwrap();
     (0..3).for_each(|_| pipe.write_all(&frame).unwrap());
     pipe.write_all(&frame[..500]).unwrap();
@@ -128,7 +139,14 @@ fn what_ends_the_program_leaves_whole_lines() {
 fn live_drops_frames_rather_than_falling_behind() {
     let bench = Bench::new("track_live");
     let words = ["track", "-", "--raw-size", "32x24", "--encoding", "millimetre", "--live", "--out", "-"];
-    let mut child = bench.command().args(words).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut child = bench
+        .command()
+        .args(words)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
     let mut pipe = child.stdin.take().unwrap();
     // A reader that does not read: nothing may pile up before it.
     pipe.write_all(&vec![4u8; 32 * 24 * 2 * 3000]).unwrap();

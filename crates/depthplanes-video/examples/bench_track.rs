@@ -4,9 +4,9 @@
 //! each with its own memory. Prints CSV: source, what, median and least milliseconds a frame. That every round gives the same
 //! ids is checked.
 
+use depthplanes::Detector;
 use depthplanes::ground::GroundFinder;
 use depthplanes::track::Tracker;
-use depthplanes::Detector;
 use depthplanes_video::{SourceOptions, VideoFrame, open};
 use std::error::Error;
 use std::time::Instant;

@@ -50,7 +50,8 @@ fn metres(frame: &VideoFrame) -> f64 {
 #[test]
 fn a_folder_comes_in_natural_order_with_the_times_of_its_names_and_goes_on_behind_what_is_broken() {
     let folder = Folder::new("folder");
-    for (name, value) in [("2_1580908150233.png", 1002), ("10_1580908150266.png", 1010), ("1_1580908150200.png", 1001)] {
+    for (name, value) in [("2_1580908150233.png", 1002), ("10_1580908150266.png", 1010), ("1_1580908150200.png", 1001)]
+    {
         folder.map(name, value);
     }
     folder.write("3_1580908150240.png", b"\x89PNG\r\n\x1a\nbroken");
@@ -115,7 +116,9 @@ fn a_synthetic_camera_moves_and_knows_where_it_is() {
     let mut still = open("scene:room:size=64x48,frames=2,speed=0,pose=none", &SourceOptions::default()).unwrap();
     let frames: Vec<VideoFrame> = all(still.as_mut()).into_iter().map(Result::unwrap).collect();
     assert!(frames[0].pose.is_none() && frames[0].frame.pixels != frames[1].frame.pixels, "the noise differs");
-    for word in ["scene:room:frames=x", "scene:room:speed=inf", "scene:room:pose=some", "scene:nowhere", "scene:room:zoom=2"] {
+    for word in
+        ["scene:room:frames=x", "scene:room:speed=inf", "scene:room:pose=some", "scene:nowhere", "scene:room:zoom=2"]
+    {
         assert!(open(word, &SourceOptions::default()).is_err(), "{word}");
     }
 }

@@ -220,7 +220,15 @@ impl MetricPlane {
     /// A plane of which only its equation and the mean of its points are known, for detections that were made elsewhere.
     pub fn new(plane: HessianNormalForm, centroid_m: [f64; 3]) -> Self {
         let covariance_from = CovarianceSource::Residuals;
-        MetricPlane { plane, rms_m: 0.0, centroid_m, area_m2: None, covariance: [[0.0; 4]; 4], white_share: 1.0, covariance_from }
+        MetricPlane {
+            plane,
+            rms_m: 0.0,
+            centroid_m,
+            area_m2: None,
+            covariance: [[0.0; 4]; 4],
+            white_share: 1.0,
+            covariance_from,
+        }
     }
 }
 

@@ -145,7 +145,8 @@ fn identity(spec: &str, speed: f64, frames: u64, with_pose: bool) -> (Identity, 
         detector = detector.sensor(frame.sensor);
         let found = detector.detect(frame.view()).unwrap();
         let tracks = tracker.track(found, &frame.sensor, pose.as_ref()).unwrap();
-        let spots = walk.same_spots((index, &frame), before.as_ref().map_or((index, &frame), |frame| (index - 1, frame)));
+        let spots =
+            walk.same_spots((index, &frame), before.as_ref().map_or((index, &frame), |frame| (index - 1, frame)));
         let (surfaces, labels) = (&frame.truth.surfaces, &found.labels);
         identity.add(&IdentityFrame { surfaces, before: &spots.unwrap(), labels, ids: &tracks.ids }).unwrap();
         all.push(tracks.clone());
@@ -174,7 +175,10 @@ fn ids_are_kept_while_the_camera_moves_with_its_pose_or_without() {
             let (found, _) = identity(spec, 1.0, 12, with_pose);
             let kept = [found.matched_planes().unwrap(), found.matched_points().unwrap()];
             let Identity { switches, plane_frames, .. } = found;
-            println!("{spec}, pose {with_pose}: planes {:.3}, points {:.3}, {switches} of {plane_frames}", kept[0], kept[1]);
+            println!(
+                "{spec}, pose {with_pose}: planes {:.3}, points {:.3}, {switches} of {plane_frames}",
+                kept[0], kept[1]
+            );
             if kept[0] < planes || kept[1] < points || found.expected_planes < 100 {
                 misses.push((spec, with_pose, kept));
             }

@@ -37,8 +37,10 @@ pub(super) fn command() -> Command {
     );
     let output = [
         flags::path("out", "FILE").help("Write a JSON line for each frame (.jsonl, or - for standard output)"),
-        flags::path("labels", "DIR").help("Write a label image for each frame into this folder: pixels have their plane's id"),
-        flags::path("overlays", "DIR").help("Write a picture for each frame into this folder; with --floor of the ground"),
+        flags::path("labels", "DIR")
+            .help("Write a label image for each frame into this folder: pixels have their plane's id"),
+        flags::path("overlays", "DIR")
+            .help("Write a picture for each frame into this folder; with --floor of the ground"),
         flags::switch("floor", "Find the floor, obstacles and steps of each frame too; they go into its line"),
     ];
     let running = [

@@ -19,7 +19,8 @@ pub const SOURCES: &[SourceInfo] = &[scene::SCENE, raw::RAW, tum::TUM, seven_sce
 /// [`Error::Source`] for a word that no source takes, and those of opening it.
 pub fn open(word: &str, options: &SourceOptions) -> Result<Box<dyn Source>> {
     let Some(info) = SOURCES.iter().find(|info| (info.is)(word)) else {
-        let wrong = if std::path::Path::new(word).exists() { "no source of frames" } else { "there is no such file or folder" };
+        let wrong =
+            if std::path::Path::new(word).exists() { "no source of frames" } else { "there is no such file or folder" };
         let accepted: Vec<String> = SOURCES.iter().map(|info| format!("{} ({})", info.name, info.about)).collect();
         return Err(Error::source(word, wrong, accepted.join("; ")));
     };

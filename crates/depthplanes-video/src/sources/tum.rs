@@ -35,7 +35,11 @@ fn open(word: &str, options: &SourceOptions) -> Result<Box<dyn Source>> {
         let [.., time, file] = words[..] else { return Err(not_a_line(&list, at, line)) };
         let time_s: f64 = time.parse().map_err(|_| not_a_line(&list, at, line))?;
         let path = file_of(folder, file).ok_or_else(|| {
-            Error::source(format!("{}:{at}", list.display()), format!("there is no file {file}"), "the files of the data set beside its list")
+            Error::source(
+                format!("{}:{at}", list.display()),
+                format!("there is no file {file}"),
+                "the files of the data set beside its list",
+            )
         })?;
         let pose = pose_at(&poses, time_s).map_or(PoseOf::Unknown, PoseOf::Known);
         entries.push(Entry { path, time_s: Some(time_s), pose });
@@ -82,10 +86,15 @@ fn poses_of(path: &Path) -> Result<Vec<(f64, CameraPose)>> {
     let mut poses = Vec::new();
     for (at, line) in lines(&text(path)?) {
         let wrong = |wrong: String| {
-            Error::source(format!("{}:{at}", path.display()), wrong, "a time, tx ty tz in metres and a quaternion qx qy qz qw")
+            Error::source(
+                format!("{}:{at}", path.display()),
+                wrong,
+                "a time, tx ty tz in metres and a quaternion qx qy qz qw",
+            )
         };
         let numbers = line.split_whitespace().map(str::parse).collect::<std::result::Result<Vec<f64>, _>>();
-        let numbers: [f64; 8] = numbers.ok().and_then(|all| all.try_into().ok()).ok_or_else(|| wrong(format!("`{line}`")))?;
+        let numbers: [f64; 8] =
+            numbers.ok().and_then(|all| all.try_into().ok()).ok_or_else(|| wrong(format!("`{line}`")))?;
         let [time_s, pose @ ..] = numbers;
         poses.push((time_s, quaternion(pose).map_err(|error| wrong(error.to_string()))?));
     }

@@ -92,7 +92,8 @@ impl Known {
 /// trace(A B^-1) / 3 of two covariances; `None` if B has no inverse.
 fn share_of(a: &Covariance, b: &Covariance) -> Option<f64> {
     // The columns of the inverse times the determinant are cross products of the rows.
-    let cross = |p: [f64; 3], q: [f64; 3]| [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+    let cross =
+        |p: [f64; 3], q: [f64; 3]| [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
     let columns = [cross(b[1], b[2]), cross(b[2], b[0]), cross(b[0], b[1])];
     let dot = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
     let share = (0..3).map(|i| dot(a[i], columns[i])).sum::<f64>() / (3.0 * dot(b[0], columns[0]));

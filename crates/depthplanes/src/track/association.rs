@@ -104,7 +104,13 @@ impl Association {
     }
 
     /// Gives the labels to the tracks; the states are predicted and the field is moved.
-    pub(super) fn assign(&mut self, found: &Detection, field: &Field, states: &[Option<State>], planes: &[TrackedPlane]) {
+    pub(super) fn assign(
+        &mut self,
+        found: &Detection,
+        field: &Field,
+        states: &[Option<State>],
+        planes: &[TrackedPlane],
+    ) {
         let metric = |label: u16| found.planes[usize::from(label) - 1].metric;
         let agree = |overlap: &Overlap| match states[overlap.track].zip(metric(overlap.label)) {
             Some((state, metric)) => is_alike(&state, &metric),
@@ -186,7 +192,8 @@ fn pair(before: &State, now: &MetricPlane) -> Pair {
 /// Whether what is seen now may be the track's plane.
 fn is_alike(state: &State, now: &MetricPlane) -> bool {
     let at = now.centroid_m;
-    let [[normal_before, height_before], [normal, height]] = [variances(&state.covariance(), at), variances(&now.covariance, at)];
+    let [[normal_before, height_before], [normal, height]] =
+        [variances(&state.covariance(), at), variances(&now.covariance, at)];
     let turned = angle(&state.plane, &now.plane).powi(2) / (normal_before + normal + ANGLE_SD * ANGLE_SD);
     let offset = dot(state.plane.normal, at) + state.plane.distance;
     let moved = offset * offset / (height_before + height + (OFFSET_SD * at[2]).powi(2));

@@ -68,16 +68,17 @@ fn rows(pair: &Pair, now: &Motion) -> [Row; 4] {
         // The normal turns by w x n.
         let axis: [f64; 3] = std::array::from_fn(|l| f64::from(u8::from(k == l)));
         let [a, b, c] = cross(moved.normal, axis);
-        Row { by: [a, b, c, 0.0, 0.0, 0.0], residual: pair.after.normal[k] - moved.normal[k], weight: 1.0 / pair.normal_variance }
+        Row {
+            by: [a, b, c, 0.0, 0.0, 0.0],
+            residual: pair.after.normal[k] - moved.normal[k],
+            weight: 1.0 / pair.normal_variance,
+        }
     };
     let height = |plane: &HessianNormalForm| dot(plane.normal, pair.at) + plane.distance;
     let [a, b, c] = cross(moved.normal, pair.at);
     let [x, y, z] = moved.normal;
-    let distance = Row {
-        by: [a, b, c, -x, -y, -z],
-        residual: height(&pair.after) - height(&moved),
-        weight: 1.0 / pair.variance,
-    };
+    let distance =
+        Row { by: [a, b, c, -x, -y, -z], residual: height(&pair.after) - height(&moved), weight: 1.0 / pair.variance };
     [normal(0), normal(1), normal(2), distance]
 }
 

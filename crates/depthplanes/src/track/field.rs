@@ -47,8 +47,7 @@ impl Field {
     pub(super) fn shift(&mut self, track: usize, motion: &Motion, plane: &HessianNormalForm, camera: &Intrinsics) {
         let Motion { rotation, translation_m } = motion;
         let rows: [[f32; 3]; 3] = std::array::from_fn(|i| {
-            let [a, b, c] =
-                [0, 1, 2].map(|j| rotation[i][j] - translation_m[i] * plane.normal[j] / plane.distance);
+            let [a, b, c] = [0, 1, 2].map(|j| rotation[i][j] - translation_m[i] * plane.normal[j] / plane.distance);
             // Of the pixel (u, v, 1) instead of the ray ((u - cx) / fx, (v - cy) / fy, 1).
             let [a, b] = [a / camera.fx, b / camera.fy];
             [a, b, c - a * camera.cx - b * camera.cy].map(|entry| entry as f32)

@@ -174,7 +174,8 @@ mod tests {
         assert!(CameraPose::new([[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]], [0.0; 3]).is_err());
         assert!(CameraPose::new([[f64::NAN; 3]; 3], [0.0; 3]).is_err());
         assert!(CameraPose::new(Motion::NONE.rotation, [f64::INFINITY, 0.0, 0.0]).is_err());
-        let rounded = Motion::small([0.3, 0.2, -0.1], [0.0; 3]).rotation.map(|row| row.map(|x| (x * 100.0).round() / 100.0));
+        let rounded =
+            Motion::small([0.3, 0.2, -0.1], [0.0; 3]).rotation.map(|row| row.map(|x| (x * 100.0).round() / 100.0));
         let exact = CameraPose::new(rounded, [0.0; 3]).unwrap().rotation();
         for i in 0..3 {
             assert!((dot(exact[i], exact[i]) - 1.0).abs() < 1e-12 && dot(exact[i], exact[(i + 1) % 3]).abs() < 1e-12);

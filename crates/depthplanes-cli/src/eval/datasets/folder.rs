@@ -2,11 +2,11 @@
 
 use super::dataset::{Item, Load, TruthOf};
 use crate::failure::{Failure, Outcome};
-use depthplanes_video::natural;
 use depthplanes::Intrinsics;
 use depthplanes::noise::SensorNoise;
 use depthplanes_io::formats::DecodeOptions;
 use depthplanes_io::{Frame, ReadOptions, read_labels};
+use depthplanes_video::natural;
 use std::path::{Path, PathBuf};
 
 /// The files of a folder for which `is_wanted` holds of the name, in natural order.
