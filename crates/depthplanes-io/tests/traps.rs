@@ -879,3 +879,40 @@ fn finer_units_of_values_spread_over_channels_are_a_scale() {
         assert_eq!(notes(&right), "", "{name}");
     }
 }
+
+#[test]
+fn maps_that_were_enlarged_by_less_than_2_are_named() {
+    let depths = depths_m();
+    let noise = |at: usize| 0.004 * (((at as u32).wrapping_mul(2_654_435_761) >> 16) as f64 / 65_536.0 - 0.5);
+    let [width, height] = SIZE;
+    for (factors, sides, edge) in [
+        ([1.25, 1.25], "102 x 77", 0.5),
+        ([1.5, 1.5], "85 x 64", 0.5),
+        ([1.5, 1.25], "85 x 77", 0.0),
+        ([1.333, 1.333], "96 x 72", 0.5),
+        ([1.6, 1.75], "80 x 55", 0.0),
+    ] {
+        let place = |at: usize, factor: f64| ((at as f64 + edge) / factor) as usize;
+        let source = |at: usize| place(at / width, factors[1]) * width + place(at % width, factors[0]);
+        for (type_, bytes) in [
+            ("millimetres", counts(|at, _| 1000.0 * (depths[source(at)] + noise(source(at))))),
+            ("metres", floats(|at, _| depths[source(at)] + noise(source(at)))),
+        ] {
+            let frame = read(&bytes, &camera());
+            let is_said = frame.warnings.iter().any(|note| note.contains("by repeating some of its pixels"));
+            assert!(is_said, "{factors:?} {type_} {sides}: {:?}", frame.warnings);
+        }
+    }
+    let floor = |at: usize| 115.2 * 1.2 / ((at / width) as f64 - 47.5).max(0.1);
+    for bytes in [
+        counts(|at, _| 1000.0 * floor(at).min(3.21)),
+        counts(|at, _| 1000.0 + 3.0 * ((at % width) / 3 * 3) as f64 + (at / width) as f64),
+        counts(|at, _| (1000.0 + 0.66 * (at % width) as f64 + 0.66 * (at / width) as f64).round()),
+        counts(|at, _| {
+            1000.0 + (20.0 + 0.4 * (at % width) as f64).floor() + (0.4 * (height - at / width) as f64).floor()
+        }),
+    ] {
+        let notes = notes(&read(&bytes, &camera()));
+        assert!(!notes.contains("by repeating some"), "{notes}");
+    }
+}

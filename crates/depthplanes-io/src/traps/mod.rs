@@ -33,7 +33,7 @@ const ALONE: &[Look] = &[labels::labels, packing::kinect_raw];
 /// All other traps. Of a row the first that is found is told, since it explains the others.
 const TRAPS: &[&[Look]] = &[
     &[missing::negative, sentinel::sentinel, source::sparse, missing::mostly],
-    &[source::enlarged, holes::interpolated],
+    &[source::enlarged, source::enlarged_a_little, holes::interpolated],
     &[
         packing::swapped,
         picture::eight_bits,

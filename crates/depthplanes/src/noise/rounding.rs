@@ -8,8 +8,8 @@
 //!
 //! A thin sample leaves gaps between values, scaled maps leave out values everywhere, and flying pixels lie between
 //! the steps. So the step is a low quantile of the gaps between values that repeat, sharpened by the mean of the gaps
-//! near it. On planes along whose rows or columns the value is constant, repeats say nothing; there the step is what
-//! all values are multiples of, which is 0 for true floats.
+//! near it. On planes along whose rows or columns the value is constant, repeats say nothing; there the step is that
+//! between terraces, or else what all values are multiples of, which is 0 for true floats.
 
 use super::lanes::{LANES, Lanes};
 use super::space::Space;
@@ -18,12 +18,14 @@ use crate::util::memory::reserve_to;
 
 mod level;
 mod sample;
+mod terraces;
 #[cfg(test)]
 mod tests;
 mod units;
 
 use level::{LEAST, Level};
 use sample::{SHIFT, Sample};
+use terraces::Terraces;
 
 /// Entries of a table over q: eight octaves of eight entries.
 const BINS: usize = 64;
@@ -134,6 +136,7 @@ pub struct RoundingFinder {
     /// q of each value that occurs, ascending.
     levels: Vec<Level>,
     gaps: Vec<f64>,
+    terraces: Terraces,
 }
 
 /// A step and where it was found.
@@ -159,24 +162,26 @@ impl RoundingFinder {
     /// # Ok::<(), depthplanes::Error>(())
     /// ```
     pub fn find<T: Pixel>(&mut self, map: &DepthView<'_, T>, space: Space) -> Rounding {
-        let RoundingFinder { sample, levels, gaps } = self;
+        let RoundingFinder { sample, levels, gaps, terraces } = self;
         let whole: f64 = if T::IS_INTEGER { 1.0 } else { 0.0 };
         sample.take(map);
         reserve_to(levels, sample::MOST);
         reserve_to(gaps, sample::MOST);
+        terraces.reserve();
         levels.extend(sample.sorted().map(|counted| Level::of(counted, space)));
         if let Space::InverseDepth { .. } = space {
             levels.reverse();
         }
         let unit = units::common(levels, space, whole);
-        let table = if sample.is_thin() { None } else { table(levels, gaps, unit, space) };
-        table.unwrap_or(Rounding::of_values(unit, space))
+        let on_lines = if are_on_lines(levels) { terraces.rounding(map, levels, unit, space) } else { None };
+        let by_values = || if sample.is_thin() { None } else { table(levels, gaps, unit, space) };
+        on_lines.or_else(by_values).unwrap_or(Rounding::of_values(unit, space))
     }
 }
 
 /// The steps over q, from levels that are multiples of `unit`; `None` if they tell no more than that unit.
 fn table(levels: &[Level], gaps: &mut Vec<f64>, unit: f64, space: Space) -> Option<Rounding> {
-    let first = bin(levels.last()?.q as f32).saturating_sub(BINS as u32 - 1);
+    let first = first_bin(levels)?;
     let all: u32 = levels.iter().map(|level| level.weight).sum();
     let mut knots = [Knot::default(); BINS];
     let mut bounds = [f64::INFINITY; BINS];
@@ -201,15 +206,30 @@ fn table(levels: &[Level], gaps: &mut Vec<f64>, unit: f64, space: Space) -> Opti
         knots[count] = Knot { q: middle(low.midpoint(high)), step };
         count += 1;
     }
-    if !is_told {
-        return None;
-    }
+    is_told.then(|| interpolated(&knots[..count], &bounds, first, unit, space))
+}
+
+/// The first entry of a table for levels that are sorted by q.
+fn first_bin(levels: &[Level]) -> Option<u32> {
+    Some(bin(levels.last()?.q as f32).saturating_sub(BINS as u32 - 1))
+}
+
+/// Whether most values occur along one row or one column: the surfaces of a camera that stands level, without noise.
+fn are_on_lines(levels: &[Level]) -> bool {
+    let weight =
+        |of: &dyn Fn(&Level) -> bool| levels.iter().filter(|level| of(level)).map(|level| level.weight).sum::<u32>();
+    let on_lines = weight(&|level| level.is_on_line() && (level.repeats as usize) < REPEATS);
+    f64::from(on_lines) >= 0.5 * f64::from(weight(&|_| true))
+}
+
+/// The table between the steps that are known, no more than the bounds and no less than the unit.
+fn interpolated(knots: &[Knot], bounds: &[f64; BINS], first: u32, unit: f64, space: Space) -> Rounding {
     let mut steps = [0.0; BINS];
     for ((bin, step), most) in (first..).zip(&mut steps).zip(bounds) {
         let q = middle(bin);
-        *step = between(&knots[..count], q).min(most).max(unit * space.unit(q)) as f32;
+        *step = between(knots, q).min(*most).max(unit * space.unit(q)) as f32;
     }
-    Some(Rounding(Steps::Table { first, steps }))
+    Rounding(Steps::Table { first, steps })
 }
 
 /// How many of the levels make the next stretch: whole bins, with enough gaps in it and in the rest.
@@ -239,8 +259,7 @@ fn look(levels: &[Level], gaps: &mut Vec<f64>, unit: f64, space: Space) -> Found
     let all: u32 = weights.iter().sum();
     let is_share = |weight: u32, share: f64| f64::from(weight) >= share * f64::from(all);
     let repeats = is_share(all - weights[..REPEATS].iter().sum::<u32>(), REPEATED);
-    let on_line = |level: &&Level| (level.weight - level.repeats) as usize >= REPEATS;
-    let on_lines = levels.iter().filter(on_line).map(|level| level.weight).sum();
+    let on_lines = levels.iter().filter(|level| level.is_on_line()).map(|level| level.weight).sum();
     if !repeats && !is_share(on_lines, 1.0 - RARE) {
         return Found::Nothing;
     }

@@ -1,5 +1,6 @@
 //! A value that occurs in a map.
 
+use super::REPEATS;
 use super::sample::Counted;
 use crate::noise::space::Space;
 
@@ -23,5 +24,10 @@ impl Level {
         let Counted { value, rows, columns } = counted;
         let value = f64::from(value);
         Level { value, q: space.q(value), repeats: rows.min(columns), weight: rows + columns }
+    }
+
+    /// Whether it occurs along a row or a column again and again.
+    pub(super) fn is_on_line(&self) -> bool {
+        (self.weight - self.repeats) as usize >= REPEATS
     }
 }
