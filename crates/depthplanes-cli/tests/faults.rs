@@ -375,8 +375,8 @@ fn a_link_that_leads_nowhere_is_said_and_the_other_maps_are_read() {
 fn what_is_no_file_in_a_folder_of_a_report_is_refused_in_time() {
     for name in ["rows.jsonl", ".lock", "rows.torn.jsonl"] {
         let bench = Bench::with_map("faults_pipe_of_rows");
-        std::fs::create_dir_all(bench.folder.join("own/depth")).unwrap();
-        bench.write("own/depth1.png", &[]);
+        std::fs::create_dir_all(bench.folder.join("own/kinect_v1")).unwrap();
+        bench.write("own/kinect_v1/depth1.png", &[]);
         std::fs::create_dir_all(bench.folder.join("report")).unwrap();
         if name == "rows.torn.jsonl" {
             bench.write("report/rows.jsonl", b"{torn");

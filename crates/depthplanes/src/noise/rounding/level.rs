@@ -1,12 +1,15 @@
 //! A value that occurs in a map.
 
-use super::REPEATS;
 use super::sample::Counted;
 use crate::noise::space::Space;
 
 /// Fewest gaps of a stretch that tell its step. Flat surfaces on which every pixel has one value make fewer gaps, and
 /// these are jumps in depth.
 pub(super) const LEAST: usize = 8;
+
+/// A value repeats if it starts at least so often in rows and in columns: on a map that is its own mirror image true
+/// floats occur twice.
+pub(super) const REPEATS: usize = 3;
 
 /// A value that occurs.
 #[derive(Clone, Copy, Debug)]

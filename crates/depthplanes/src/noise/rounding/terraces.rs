@@ -4,8 +4,7 @@
 //! repeat anywhere else, whatever they are rounded to. Where a value goes on for two pixels or more and the next one does so
 //! too, they are a step apart.
 
-use super::level::Level;
-use super::{BINS, ENOUGH, Knot, QUANTILE, Rounding, bin, first_bin, interpolated, middle, sharpened};
+use super::knots::{BINS, ENOUGH, Knot, QUANTILE, bin, middle, sharpened};
 use crate::map::{DepthView, Pixel};
 use crate::noise::space::Space;
 use crate::util::memory::reserve_to;
@@ -38,24 +37,8 @@ impl Terraces {
         reserve_to(&mut self.sizes, MOST);
     }
 
-    /// The rounding of a map with these levels, whose values are multiples of `unit`; `None` if it has no terraces, or if they
-    /// tell no more than that unit.
-    pub(super) fn rounding<T: Pixel>(
-        &mut self,
-        map: &DepthView<'_, T>,
-        levels: &[Level],
-        unit: f64,
-        space: Space,
-    ) -> Option<Rounding> {
-        let (knots, count) = self.knots(map, space, unit);
-        let knots = &knots[..count];
-        let is_told = knots.iter().any(|knot| knot.step > 1.5 * unit * space.unit(knot.q));
-        let first = first_bin(levels).filter(|_| is_told)?;
-        Some(interpolated(knots, &[f64::INFINITY; BINS], first, unit, space))
-    }
-
-    /// The steps over q, with their number.
-    fn knots<T: Pixel>(&mut self, map: &DepthView<'_, T>, space: Space, unit: f64) -> ([Knot; BINS], usize) {
+    /// The steps of a map over q, with their number; its values are multiples of `unit`.
+    pub(super) fn knots<T: Pixel>(&mut self, map: &DepthView<'_, T>, space: Space, unit: f64) -> ([Knot; BINS], usize) {
         let Terraces { gaps, sizes } = self;
         for v in (0..map.height()).step_by(map.height().div_ceil(LINES)) {
             walk(map.row(v).iter().copied(), map, space, gaps);
