@@ -1,6 +1,7 @@
 //! What the words after a command stand for: files, folders, patterns, standard input, scenes.
 
-use crate::failure::{Failure, Outcome};
+use crate::checksum::fnv;
+use crate::failure::{Failure, Outcome, note};
 use depthplanes_io::formats::{FORMATS, left_out};
 use depthplanes_io::outputs::OUTPUTS;
 use depthplanes_video::natural;
@@ -43,14 +44,29 @@ impl Input {
     /// What the names of its files in a folder of results begin with.
     pub(crate) fn stem(&self) -> String {
         match self {
-            Input::File { path, .. } => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+            Input::File { path, .. } => shortened(path.file_stem().unwrap_or_default().to_string_lossy().into_owned()),
             Input::Standard => "stdin".into(),
             Input::Scene(spec) => {
                 let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-                format!("scene_{}", spec.chars().map(plain).collect::<String>())
+                shortened(format!("scene_{}", spec.chars().map(plain).collect::<String>()))
             }
         }
     }
+}
+
+/// Bytes of the longest name that file systems take.
+const LONGEST_NAME: usize = 255;
+
+/// A stem with which the names of all outputs can be had: of a longer one the beginning, and a checksum of all of it, so that names
+/// that begin alike stay apart.
+fn shortened(stem: String) -> String {
+    let most = LONGEST_NAME - 1 - OUTPUTS.iter().map(|output| output.file.len()).max().unwrap_or(0);
+    if stem.len() <= most {
+        return stem;
+    }
+    let tail = format!("-{:08x}", fnv(&stem) as u32);
+    let kept = (0..=most - tail.len()).rev().find(|&end| stem.is_char_boundary(end)).unwrap_or(0);
+    format!("{}{tail}", &stem[..kept])
 }
 
 /// All inputs that the words stand for, in the order given; folders and patterns in natural order. `recursive`: folders
@@ -139,6 +155,7 @@ fn extension(path: &Path) -> String {
 fn own_maps(folder: &Path) -> Outcome<Vec<PathBuf>> {
     let mut maps = files_in(folder)?;
     maps.retain(|path| !is_ours(path));
+    folder.read_dir().into_iter().flatten().flatten().for_each(|entry| tell_of_dangling(&entry.path()));
     Ok(maps)
 }
 
@@ -201,9 +218,20 @@ pub(crate) fn files_in(folder: &Path) -> Outcome<Vec<PathBuf>> {
 }
 
 fn is_readable(path: &Path) -> bool {
+    has_name_of_map(path) && path.is_file()
+}
+
+fn has_name_of_map(path: &Path) -> bool {
     let extension = extension(path);
     let known = FORMATS.iter().any(|format| format.extensions.contains(&extension.as_str()));
-    known && !file_name(path).starts_with('.') && path.is_file()
+    known && !file_name(path).starts_with('.')
+}
+
+/// Says of a link that has the name of a map and leads nowhere that it is left out.
+fn tell_of_dangling(path: &Path) {
+    if has_name_of_map(path) && !is_ours(path) && path.is_symlink() && !path.exists() {
+        note(&format!("{}: left out: a link, and what it leads to is not there", path.display()));
+    }
 }
 
 /// `detect` writes INPUT.labels.png, `demo` writes labels.png.
@@ -218,7 +246,9 @@ fn file_name(path: &Path) -> String {
 
 fn matching(pattern: &str) -> Outcome<Vec<Input>> {
     let wrong = |error: glob::PatternError| Failure::request(format!("{pattern}: not a pattern: {error}"));
-    let files: Vec<PathBuf> = glob::glob(pattern).map_err(wrong)?.flatten().filter(|path| path.is_file()).collect();
+    let found: Vec<PathBuf> = glob::glob(pattern).map_err(wrong)?.flatten().collect();
+    found.iter().for_each(|path| tell_of_dangling(path));
+    let files: Vec<PathBuf> = found.into_iter().filter(|path| path.is_file()).collect();
     if files.is_empty() {
         return Err(Failure::request(format!("{pattern}: no file matches this pattern")));
     }

@@ -1,6 +1,7 @@
 //! The program `depthplanes`: planes from depth and disparity maps, on the command line.
 
 mod args;
+mod checksum;
 mod commands;
 mod eval;
 mod failure;

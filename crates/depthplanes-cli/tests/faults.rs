@@ -349,3 +349,42 @@ fn formats_that_this_build_does_not_read_are_not_named_as_accepted() {
     let help = bench.run(&["detect", "--help"]).ok();
     assert_eq!(help.contains("EXR"), is_built, "{help}");
 }
+
+#[test]
+fn a_link_that_leads_nowhere_is_said_and_the_other_maps_are_read() {
+    let bench = Bench::new("faults_dangling");
+    std::fs::create_dir_all(bench.folder.join("maps/below")).unwrap();
+    bench.write("maps/a.pgm", &two_planes(1003));
+    bench.write("maps/below/b.pgm", &two_planes(1003));
+    for gone in ["maps/gone.pgm", "maps/below/gone.png", "maps/gone.npy"] {
+        std::os::unix::fs::symlink("/nowhere/at/all", bench.folder.join(gone)).unwrap();
+    }
+    for (words, gone, count) in [
+        (&["inspect", "maps"][..], &["maps/gone.pgm", "maps/gone.npy"][..], 2),
+        (&["detect", "maps", "--recursive"], &["maps/gone.pgm", "maps/below/gone.png", "maps/gone.npy"], 3),
+        (&["detect", "maps/*.pgm"], &["maps/gone.pgm"], 1),
+    ] {
+        let ran = quiet(&bench, words);
+        assert_eq!(ran.code, Some(0), "{ran:?}");
+        assert!(gone.iter().all(|name| ran.err.contains(&format!("{name}: left out"))), "{ran:?}");
+        assert_eq!(ran.err.matches("left out").count(), count, "{ran:?}");
+    }
+}
+
+#[test]
+fn what_is_no_file_in_a_folder_of_a_report_is_refused_in_time() {
+    for name in ["rows.jsonl", ".lock", "rows.torn.jsonl"] {
+        let bench = Bench::with_map("faults_pipe_of_rows");
+        std::fs::create_dir_all(bench.folder.join("own/kinect_v1")).unwrap();
+        bench.write("own/kinect_v1/depth1.png", &[]);
+        std::fs::create_dir_all(bench.folder.join("report")).unwrap();
+        if name == "rows.torn.jsonl" {
+            bench.write("report/rows.jsonl", b"{torn");
+        }
+        bench.shell(&format!("mkfifo report/{name}")).ok();
+        let start = Instant::now();
+        let words = "timeout 20 \"$DP\" eval kinect --data own --methods ngaf --repeat 1 --report report";
+        let said = bench.shell(words).fails(2);
+        assert!(said.contains(name) && start.elapsed() < Duration::from_secs(15), "{said}");
+    }
+}

@@ -49,6 +49,25 @@ fn names_may_be_as_long_as_the_disk_takes_them() {
 }
 
 #[test]
+fn inputs_of_the_longest_names_have_results_of_their_own_in_a_folder() {
+    let bench = Bench::new("written_long_inputs");
+    for letter in ["a", "é", "深"] {
+        let stem = letter.repeat(248 / letter.len());
+        // Names that differ at their ends alone.
+        for end in ["1.pgm", "2.pgm"] {
+            bench.write(&format!("{stem}{end}"), &support::two_planes(1003));
+        }
+    }
+    bench.run(&["detect", "*.pgm", "--out-dir", "all", "--only", "labels,planes"]).ok();
+    let names = support::names_in(&bench.folder.join("all"));
+    assert_eq!(names.iter().filter(|name| name.ends_with(".labels.png")).count(), 6, "{names:?}");
+    assert_eq!(names.len(), 12, "{names:?}");
+    let all = bench.folder.join("every");
+    bench.run(&["detect", &format!("{}1.pgm", "a".repeat(248)), "--out-dir", "every"]).ok();
+    assert!(support::names_in(&all).len() > 2);
+}
+
+#[test]
 fn what_killed_runs_left_goes_and_nothing_else_does() {
     let bench = Bench::with_map("written_left");
     let living = format!(".l.png.{}-0.part", std::process::id());

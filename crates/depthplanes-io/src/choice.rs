@@ -22,7 +22,8 @@ pub(crate) struct Choice {
     pub(crate) note: Option<String>,
 }
 
-/// Chooses the encoding of a map: the one `stated`, if one is; `disparity` says that the numbers are disparities.
+/// Chooses the encoding of a map: the one `stated`, if one is; `disparity` says that the numbers are disparities, and
+/// `has_scale` that their scale is stated.
 ///
 /// # Errors
 /// [`crate::Error::Parameter`] for an encoding that does not exist.
@@ -31,20 +32,26 @@ pub(crate) fn choose(
     format: &str,
     stated: Option<&'static Encoding>,
     disparity: bool,
+    has_scale: bool,
     preset: Option<&SensorPreset>,
 ) -> Result<Choice> {
     if let Some(encoding) = stated {
         return Ok(Choice { encoding, why: "stated".into(), note: None });
     }
     if let Some(encoding) = encoding::stated_by_file(image) {
-        return Ok(Choice { encoding, why: "the file's header states it".into(), note: None });
+        let [a, b] = image.quantisation.unwrap_or_default();
+        let note = format!(
+            "read as a 32FC1 topic: quantised inverse depth by the header's A = {a} and B = {b}; if the topic is 16UC1, \
+             state --encoding millimetre"
+        );
+        return Ok(Choice { encoding, why: "the file's header states it".into(), note: Some(note) });
     }
     let Some(preset) = preset else {
         let (encoding, why) = match image.sample {
             "int16" if disparity => (encoding::by_name("opencv")?, "OpenCV's matchers write signed 16 bits".into()),
             _ => likely(&image.pixels, image.width, format, disparity),
         };
-        let is_doubtful = disparity && ["kitti", "opencv"].contains(&encoding.name);
+        let is_doubtful = disparity && !has_scale && ["kitti", "opencv"].contains(&encoding.name);
         let note = format!(
             "disparity of 16 bits is taken to be in {} (`{}`), since {why}; state --encoding or --scale if it is not, \
              --encoding millimetre if it is depth",

@@ -121,7 +121,8 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
     }
     let of_disparity = options.camera_file.as_ref().is_some_and(|camera| camera.disparity);
     let disparity = options.disparity || options.stereo.is_some() || of_disparity;
-    let Choice { encoding, why, note } = choose(&image, format.name, by_user, disparity, preset)?;
+    let Choice { encoding, why, note } =
+        choose(&image, format.name, by_user, disparity, options.scale.is_some(), preset)?;
     image.warnings.extend(note);
     if options.disparity && !encoding.disparity {
         let accepted = "an encoding of disparity (disparity, kitti, middlebury), or leave --disparity out";

@@ -61,6 +61,10 @@ pub(crate) fn flag(camera: &Intrinsics) -> String {
     format!("--intrinsics={fx},{fy},{cx},{cy}")
 }
 
+/// Sizes of pictures, as shares of the map's, whose middle the principal point of the map's own camera may be: calibrated ones
+/// are off the middle in both directions alike by less.
+const ALMOST_OWN: std::ops::Range<f64> = 0.9..1.11;
+
 /// The size of which the principal point is the middle, and the camera scaled to the map, if the map has that shape and
 /// is clearly of another size.
 pub(crate) fn whole_picture(camera: &Intrinsics, map: Size) -> Option<(Size, Intrinsics)> {
@@ -69,7 +73,7 @@ pub(crate) fn whole_picture(camera: &Intrinsics, map: Size) -> Option<(Size, Int
     let ratio = size.0 as f64 / map.0 as f64;
     // A calibrated principal point is off the middle by a hundredth.
     let is_alike = (ratio / (size.1 as f64 / map.1 as f64) - 1.0).abs() < 0.03;
-    if !is_alike || (0.75..1.34).contains(&ratio) {
+    if !is_alike || ALMOST_OWN.contains(&ratio) {
         return None;
     }
     // The sizes of pictures are even.

@@ -724,3 +724,83 @@ fn the_page_of_cameras_lists_every_form() {
     }
     assert!(std::fs::read_to_string(&path).unwrap() == made, "docs/cameras.md is not that of the table: make golden");
 }
+
+#[test]
+fn a_key_that_stands_twice_is_refused_and_the_same_twice_is_not() {
+    for text in [
+        "fx: 525\nfy: 526\ncx: 319.5\ncy: 239.5\nfx: 600\n",
+        "camera:\n  fx: 525\n  fy: 526\n  cx: 319.5\n  cy: 239.5\n  cx: 300\n",
+        "camera: {fx: 525, fy: 526, cx: 319.5, cy: 239.5, cy: 200}",
+        r#"{"fx": 525, "fy": 526, "cx": 319.5, "cy": 239.5, "fx": 600}"#,
+        r#"{"a": [{"fx": 525, "fx": 600, "fy": 526, "cx": 319.5, "cy": 239.5}]}"#,
+        "fx = 525\nfy = 526\ncx = 319.5\ncy = 239.5\nfx = 600\n",
+    ] {
+        let error = parse(text).unwrap_err().to_string();
+        assert!(error.contains("stands twice"), "{text}: {error}");
+    }
+    for text in [
+        "fx: 525\nfy: 526\ncx: 319.5\ncy: 239.5\nfx: 525.0\n",
+        r#"{"fx": 525, "fy": 526, "cx": 319.5, "cy": 239.5, "fx": 525}"#,
+        "fx = 525\nfx = 525\nfy = 526\ncx = 319.5\ncy = 239.5\n",
+    ] {
+        assert!(close(parse(text).unwrap().intrinsics, VGA), "{text}");
+    }
+}
+
+#[test]
+fn lines_may_end_with_cr_alone() {
+    let mut count = 0;
+    for (form, text, right, _) in SPECIMENS {
+        if text.contains('\r') {
+            continue;
+        }
+        let camera = parse(&text.replace('\n', "\r")).unwrap_or_else(|error| panic!("{form}: {error}\n{text}"));
+        assert!(close(camera.intrinsics, *right), "{form}: {camera:?}\n{text}");
+        count += 1;
+    }
+    assert!(count > 40, "{count}");
+}
+
+#[test]
+fn of_several_cameras_the_one_of_the_depth_map_is_taken() {
+    let of = |name: &str, fx: f64| format!(r#""{name}": {{"fx": {fx}, "fy": {fx}, "cx": 319.5, "cy": 239.5}}"#);
+    for (names, right) in [
+        (["color", "depth", "depth_to_color"], 501.0),
+        (["aligned_depth_to_color", "depth", "infra1"], 501.0),
+        (["rgb", "color_to_depth", "depth_camera"], 502.0),
+    ] {
+        let cameras: Vec<String> = (0..).zip(names).map(|(at, name)| of(name, 500.0 + f64::from(at))).collect();
+        let camera = parse(&format!("{{{}}}", cameras.join(", "))).unwrap();
+        assert_eq!(camera.intrinsics.fx, right, "{names:?}");
+        assert!(camera.notes.iter().any(|note| note.contains("is taken, not")), "{:?}", camera.notes);
+    }
+    for names in [["color", "depth_to_color", "ir"], ["color", "ir", "depth2color"], ["rgb", "infra1", "depthToRgb"]] {
+        let cameras: Vec<String> = (0..).zip(names).map(|(at, name)| of(name, 500.0 + f64::from(at))).collect();
+        let error = parse(&format!("{{{}}}", cameras.join(", "))).unwrap_err().to_string();
+        assert!(error.contains("several cameras that differ") && error.contains("--intrinsics"), "{error}");
+    }
+}
+
+#[test]
+fn a_camera_of_another_size_whose_shape_is_close_is_noted() {
+    for (camera, size) in [
+        ("617.1,617.3,421.9,238.1", (640, 360)),
+        ("366.1,366.2,257.9,206.4", (640, 512)),
+        ("504.3,504.4,318.0,292.1", (512, 464)),
+        ("600.1,600.2,322.0,242.9", (544, 408)),
+    ] {
+        let frame = framed(camera, size, |_| ()).unwrap();
+        let is_noted =
+            frame.warnings.iter().any(|note| note.contains("is the middle of") && note.contains("--camera-size"));
+        assert!(is_noted, "{camera}: {:?}", frame.warnings);
+    }
+    // Calibrated cameras of their own maps.
+    for (camera, size) in [
+        ("575.9,576.4,315.2,230.6", (640, 480)),
+        ("504.3,504.4,321.0,334.9", (640, 576)),
+        ("994.9,994.9,311.2,254.9", (741, 500)),
+        ("366.1,366.1,258.2,204.2", (512, 424)),
+    ] {
+        assert_eq!(framed(camera, size, |_| ()).unwrap().warnings, [""; 0], "{camera}");
+    }
+}

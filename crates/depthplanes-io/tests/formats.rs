@@ -393,7 +393,9 @@ fn compressed_depth_is_inverse_depth_where_its_header_says_so() {
         let preset = ReadOptions { preset: Some("kinect1".into()), ..Default::default() };
         assert_eq!(decode(&bytes, "map", &preset).unwrap().encoding, "compressed-depth");
         let stated = ReadOptions { encoding: Some("mm".into()), ..Default::default() };
-        assert_eq!(decode(&bytes, "map", &stated).unwrap().encoding, "millimetre");
+        let stated = decode(&bytes, "map", &stated).unwrap();
+        assert_eq!(stated.encoding, "millimetre");
+        assert!(stated.warnings.iter().all(|note| !note.contains("32FC1")), "{:?}", stated.warnings);
     }
     // What memory held: nothing, tiny, huge, not a number, and numbers that make no depths.
     for (a, b) in [(0.0, 0.0), (4.6e-41, 0.0), (1e30, -1e30), (f32::NAN, 1.0), (1.0, 0.0), (-10_100.0, -1009.0)] {

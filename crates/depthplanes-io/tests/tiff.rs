@@ -126,3 +126,25 @@ fn what_is_not_read_is_named() {
         assert!(error.contains(said), "{error}");
     }
 }
+
+#[test]
+fn a_page_of_depth_is_taken_before_pictures_of_colours() {
+    let depth = page((16, 1), 1, bytes(|v| (v as u16).to_le_bytes()));
+    let two = |at: u8| if at % 3 == 2 { 0 } else { at };
+    let colours = TiffPage { channels: 3, ..page((8, 1), 2, (0..18).map(two).collect()) };
+    let opaque = TiffPage { channels: 4, ..page((8, 1), 2, (0..24).collect()) };
+    let larger = TiffPage { width: 4, height: 3, channels: 3, ..page((8, 1), 2, (0..36).collect()) };
+    for (pages, note) in [
+        (vec![colours.clone(), depth.clone()], "page 2 of 2 is taken"),
+        (vec![larger, depth.clone()], "page 2 of 2 is taken"),
+        (vec![colours.clone(), opaque, depth.clone()], "page 3 of 3 is taken"),
+        (vec![depth.clone(), colours.clone()], "page 1 of 2 is taken"),
+    ] {
+        let frame = read(&tiff_by_hand(&pages, false), None).unwrap();
+        assert!(frame.pixels == Pixels::U16(VALUES.to_vec()) && notes(&frame).contains(note), "{}", notes(&frame));
+    }
+    // A value spread over channels is what its encoding asks for.
+    let stated = ReadOptions { encoding: Some("bytes-low-high".into()), ..Default::default() };
+    let packed = decode(&tiff_by_hand(&[colours, depth], false), "map", &stated).unwrap();
+    assert_eq!(packed.pixels, Pixels::U16(vec![256, 1027, 1798, 2569, 3340, 4111]));
+}

@@ -746,3 +746,173 @@ fn a_lens_that_folds_within_the_picture_is_noted_with_the_share_of_it() {
         assert_eq!(folds(&lens(model, coefficients, 1.0)), None, "{model:?}");
     }
 }
+
+/// The room with a value on the pixels that `is` says, the rest with noise of some millimetres.
+fn noisy_with(value: f64, is: impl Fn(usize, usize) -> bool) -> Vec<u8> {
+    let noise = |at: usize| ((at as u32).wrapping_mul(2_654_435_761) >> 16) as f64 / 65_536.0 - 0.5;
+    counts(move |at, depth| if is(at % SIZE[0], at / SIZE[0]) { value } else { 1000.0 * depth + 12.0 * noise(at) })
+}
+
+#[test]
+fn one_exact_value_on_many_pixels_is_named() {
+    let ragged = |u: usize, v: usize| (u / 4 * 7 + v / 4 * 5) % 11 < 2;
+    let shadow = |u: usize, v: usize| u > 104 && u < 108 && v > 40 && v < 90;
+    let sky = |_: usize, v: usize| v < 24;
+    for (name, bytes, options, value) in [
+        // Within the values, at the top, at the bottom; from 1 % to 25 % of the pixels.
+        ("12 bits full, within", noisy_with(4095.0, ragged), camera(), 4095.0),
+        ("2 m, within", noisy_with(2000.0, sky), camera(), 2000.0),
+        ("no round number", noisy_with(3127.0, ragged), camera(), 3127.0),
+        ("a shadow of 1 %", noisy_with(10_000.0, shadow), camera(), 10_000.0),
+        ("a clip beyond the room", noisy_with(8191.0, sky), camera(), 8191.0),
+        ("1 mm", noisy_with(1.0, ragged), camera(), 1.0),
+        ("10 mm", noisy_with(10.0, shadow), encoding("millimetre"), 10.0),
+        ("999 m", floats(|at, depth| if ragged(at % SIZE[0], at / SIZE[0]) { 999.0 } else { depth }), camera(), 999.0),
+        (
+            "1000 m",
+            floats(|at, depth| if shadow(at % SIZE[0], at / SIZE[0]) { 1000.0 } else { depth }),
+            camera(),
+            1000.0,
+        ),
+        ("0.01 m", floats(|at, depth| if sky(at % SIZE[0], at / SIZE[0]) { 0.01 } else { depth }), camera(), 0.01),
+    ] {
+        let frame = read(&bytes, &options);
+        noted(name, &frame, &["of the pixels are exactly", &format!("--missing {value}")]);
+        assert!(!notes(&frame).contains("where no camera sees"), "{name}: {}", notes(&frame));
+        let stated = read(&bytes, &ReadOptions { missing: Some(value), ..options });
+        assert!(!notes(&stated).contains("exactly"), "{name}: {}", notes(&stated));
+        check(name, &stated, &ROOM, CLOSE);
+    }
+}
+
+#[test]
+fn what_matchers_write_for_no_match_is_named() {
+    let ragged = |at: usize| (at % SIZE[0] / 4 * 7 + at / SIZE[0] / 4 * 5) % 11 < 2;
+    let px = |depth: f64| 115.2 * 0.5 / depth;
+    let rig = Stereo { focal_px: 115.2, baseline_m: 0.5, doffs_px: 0.0 };
+    let of = |name: &str, scale: Option<f64>| ReadOptions { stereo: Some(rig), scale, ..encoding(name) };
+    for (name, bytes, options, value) in [
+        (
+            "SGBM from 8 px on",
+            counts(|at, depth| if ragged(at) { 7.0 * 16.0 } else { 16.0 * px(depth) }),
+            of("opencv", None),
+            112.0,
+        ),
+        (
+            "SGBM from 4 px on",
+            counts(|at, depth| if ragged(at) { 3.0 * 16.0 } else { 16.0 * px(depth) }),
+            of("opencv", None),
+            48.0,
+        ),
+        ("SGBM as pixels", floats(|at, depth| if ragged(at) { 9.0 } else { px(depth) }), of("disparity", None), 9.0),
+        (
+            "255 of 8 bits",
+            npy(
+                "|u1",
+                depths_m()
+                    .iter()
+                    .enumerate()
+                    .map(|(at, &z)| if ragged(at) { 255 } else { (4.0 * px(z)) as u8 })
+                    .collect(),
+            ),
+            of("middlebury", Some(4.0)),
+            255.0,
+        ),
+        ("1000 px", floats(|at, depth| if ragged(at) { 1000.0 } else { px(depth) }), of("disparity", None), 1000.0),
+    ] {
+        noted(name, &read(&bytes, &options), &["of the pixels are exactly", &format!("--missing {value}")]);
+    }
+}
+
+#[test]
+fn surfaces_of_one_exact_value_are_no_missing_values() {
+    // Renderings without noise: a wall that faces the camera is the farthest, a box or a table the nearest.
+    let box_at = |at: usize| (40..80).contains(&(at % SIZE[0])) && (30..70).contains(&(at / SIZE[0]));
+    let floor = |at: usize| 115.2 * 1.2 / ((at / SIZE[0]) as f64 - 47.5).max(0.1);
+    for (name, bytes) in [
+        ("a wall at 3.21 m", counts(|at, _| 1000.0 * floor(at).min(3.21))),
+        ("a wall and a box", counts(|at, _| if box_at(at) { 1733.0 } else { 1000.0 * floor(at).min(3.777) })),
+        ("a box in the room", counts(|at, depth| if box_at(at) { 1377.0 } else { 1000.0 * depth })),
+        ("floats", floats(|at, _| floor(at).min(3.21))),
+    ] {
+        let notes = notes(&read(&bytes, &camera()));
+        assert!(!notes.contains("--missing"), "{name}: {notes}");
+    }
+}
+
+#[test]
+fn a_scale_that_is_stated_is_not_asked_for() {
+    let px = |at: usize, depth: f64| if at.is_multiple_of(16) { 65_520.0 } else { 16.0 * 115.2 * 0.3 / depth };
+    let rig = Stereo { focal_px: 115.2, baseline_m: 0.3, doffs_px: 0.0 };
+    for (times, bytes) in [
+        (1.0, counts(px)),
+        (2.0, counts(|at, depth| if at % 16 == 0 { 65_520.0 } else { 2.0 * px(at, depth) })),
+        (16.0, counts(|_, depth| 16.0 * px(1, depth))),
+    ] {
+        let options = ReadOptions { disparity: true, stereo: Some(rig), scale: Some(16.0 * times), ..camera() };
+        let frame = read(&bytes, &options);
+        check("stated", &frame, &ROOM, CLOSE);
+        assert_eq!(notes(&frame), "", "{times}");
+        let guessed = ReadOptions { scale: None, ..options };
+        noted("guessed", &read(&bytes, &guessed), &["state --encoding or --scale"]);
+    }
+}
+
+#[test]
+fn finer_units_of_values_spread_over_channels_are_a_scale() {
+    let [width, height] = SIZE;
+    for (name, units) in
+        [("rgb24-low-high", 1e6), ("rgb24-high-low", 1e6), ("rgb24-low-high", 1e5), ("rgb24-high-low", 2e6)]
+    {
+        let bytes = depths_m().into_iter().flat_map(|depth| {
+            let [low, middle, high, _] = ((units * depth) as u32).to_le_bytes();
+            if name == "rgb24-low-high" { [low, middle, high] } else { [high, middle, low] }
+        });
+        let picture = [format!("P6\n{width} {height}\n255\n").into_bytes(), bytes.collect()].concat();
+        noted(
+            name,
+            &read(&picture, &encoding(name)),
+            &["the median depth would be", &format!("--scale {}", units.min(1e6))],
+        );
+        let right = read(&picture, &ReadOptions { scale: Some(units), ..encoding(name) });
+        check(name, &right, &ROOM, CLOSE);
+        assert_eq!(notes(&right), "", "{name}");
+    }
+}
+
+#[test]
+fn maps_that_were_enlarged_by_less_than_2_are_named() {
+    let depths = depths_m();
+    let noise = |at: usize| 0.004 * (((at as u32).wrapping_mul(2_654_435_761) >> 16) as f64 / 65_536.0 - 0.5);
+    let [width, height] = SIZE;
+    for (factors, sides, edge) in [
+        ([1.25, 1.25], "102 x 77", 0.5),
+        ([1.5, 1.5], "85 x 64", 0.5),
+        ([1.5, 1.25], "85 x 77", 0.0),
+        ([1.333, 1.333], "96 x 72", 0.5),
+        ([1.6, 1.75], "80 x 55", 0.0),
+    ] {
+        let place = |at: usize, factor: f64| ((at as f64 + edge) / factor) as usize;
+        let source = |at: usize| place(at / width, factors[1]) * width + place(at % width, factors[0]);
+        for (type_, bytes) in [
+            ("millimetres", counts(|at, _| 1000.0 * (depths[source(at)] + noise(source(at))))),
+            ("metres", floats(|at, _| depths[source(at)] + noise(source(at)))),
+        ] {
+            let frame = read(&bytes, &camera());
+            let is_said = frame.warnings.iter().any(|note| note.contains("by repeating some of its pixels"));
+            assert!(is_said, "{factors:?} {type_} {sides}: {:?}", frame.warnings);
+        }
+    }
+    let floor = |at: usize| 115.2 * 1.2 / ((at / width) as f64 - 47.5).max(0.1);
+    for bytes in [
+        counts(|at, _| 1000.0 * floor(at).min(3.21)),
+        counts(|at, _| 1000.0 + 3.0 * ((at % width) / 3 * 3) as f64 + (at / width) as f64),
+        counts(|at, _| (1000.0 + 0.66 * (at % width) as f64 + 0.66 * (at / width) as f64).round()),
+        counts(|at, _| {
+            1000.0 + (20.0 + 0.4 * (at % width) as f64).floor() + (0.4 * (height - at / width) as f64).floor()
+        }),
+    ] {
+        let notes = notes(&read(&bytes, &camera()));
+        assert!(!notes.contains("by repeating some"), "{notes}");
+    }
+}

@@ -8,6 +8,18 @@ use std::path::Path;
 /// The file that is locked, within the folder. It stays; the lock goes with the process, however that ends.
 const FILE: &str = ".lock";
 
+/// Refuses what is there and no file: a pipe would be waited for without end.
+///
+/// # Errors
+/// A pipe, a device or a folder of that name.
+pub(super) fn refuse_no_file(path: &Path) -> Outcome {
+    if path.exists() && !path.is_file() {
+        let message = "no file, as a report's folder has it; take another folder, or move it away";
+        return Err(Failure::request(format!("{}: {message}", path.display())));
+    }
+    Ok(())
+}
+
 /// A folder that is ours until this is dropped.
 pub(super) struct Claim {
     _file: File,
@@ -20,6 +32,7 @@ impl Claim {
     /// A folder that another run writes into, or a disk that refuses.
     pub(super) fn of(folder: &Path) -> Outcome<Self> {
         let path = folder.join(FILE);
+        refuse_no_file(&path)?;
         let failed = |error| Failure::machine(format!("{}: {error}", path.display()));
         let mut file =
             OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path).map_err(failed)?;

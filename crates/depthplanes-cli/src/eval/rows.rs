@@ -1,5 +1,6 @@
 //! What a method made of a map, as a line of JSON; and the file of such lines that an interrupted evaluation goes on from.
 
+use super::claim::refuse_no_file;
 use crate::failure::{Failure, Outcome, note};
 use depthplanes::methods;
 use depthplanes_io::outputs::write_file;
@@ -82,6 +83,9 @@ impl Store {
     /// A file that cannot be read or written, or that holds something else.
     pub(crate) fn open(path: &Path) -> Outcome<Self> {
         let failed = |error| Failure::machine(format!("{}: {error}", path.display()));
+        for path in [path, &beside(path)] {
+            refuse_no_file(path)?;
+        }
         let mut file =
             OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(failed)?;
         let mut bytes = Vec::new();

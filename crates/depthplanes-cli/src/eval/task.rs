@@ -4,6 +4,7 @@ use super::datasets::{Item, TruthOf};
 use super::machine;
 use super::peers::Peer;
 use super::rows::{Found, Key, Made, Row, Store};
+use crate::checksum::fnv;
 use crate::failure::{Failure, Outcome};
 use crate::measures::{MEASURES, Scores, of_surfaces};
 use crate::run::{Recipe, Runner};
@@ -117,11 +118,6 @@ fn labels_name(key: &Key) -> String {
         name += &format!(".{:016x}", fnv(&format!("{dataset}\n{map}\n{method}")));
     }
     format!("{name}.{:08x}.png", fnv(parameters) as u32)
-}
-
-/// FNV-1a.
-fn fnv(text: &str) -> u64 {
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 fn valid_pixels(frame: &Frame) -> Outcome<usize> {

@@ -4,9 +4,11 @@
 use serde_json::{Map, Value};
 
 use super::names::words;
+use super::once::insert_once;
 
-/// The tree of a text whose every line is `key = value` or `[section]`; none of another. Values in brackets may go on below.
-pub(super) fn parse(text: &str) -> Option<Value> {
+/// The tree of a text whose every line is `key = value` or `[section]`, or a key that stands twice; none of another text.
+/// Values in brackets may go on below.
+pub(super) fn parse(text: &str) -> Option<Result<Value, String>> {
     let (mut root, mut section) = (Map::new(), Vec::new());
     let mut lines = text.lines().map(without_comment).filter(|line| !line.is_empty());
     while let Some(line) = lines.next() {
@@ -21,10 +23,12 @@ pub(super) fn parse(text: &str) -> Option<Value> {
         }
         for (key, value) in assignments(&whole)? {
             let path: Vec<&str> = section.iter().map(String::as_str).chain(key.split('.')).collect();
-            put(&mut root, &path, value)?;
+            if let Err(twice) = put(&mut root, &path, value)? {
+                return Some(Err(twice));
+            }
         }
     }
-    (!root.is_empty()).then_some(Value::Object(root))
+    (!root.is_empty()).then_some(Ok(Value::Object(root)))
 }
 
 fn without_comment(line: &str) -> &str {
@@ -74,13 +78,10 @@ fn scalar(text: &str) -> Value {
     }
 }
 
-fn put(object: &mut Map<String, Value>, path: &[&str], value: Value) -> Option<()> {
+fn put(object: &mut Map<String, Value>, path: &[&str], value: Value) -> Option<Result<(), String>> {
     match path {
         [] => None,
-        [name] => {
-            object.entry(name.to_string()).or_insert(value);
-            Some(())
-        }
+        [name] => Some(insert_once(object, name, value)),
         [name, rest @ ..] if rest.len() < 16 => {
             match object.entry(name.to_string()).or_insert_with(|| Value::Object(Map::new())) {
                 Value::Object(inner) => put(inner, rest, value),

@@ -5,6 +5,7 @@ use std::cell::OnceCell;
 use serde_json::Value;
 
 use super::camera::CameraFile;
+use super::once::OnceKeys;
 use super::{assign, xml, yaml};
 use crate::error::Result;
 
@@ -42,16 +43,16 @@ impl<'a> Document<'a> {
 
     pub(super) fn read(&self) -> &std::result::Result<Value, String> {
         self.tree.get_or_init(|| match serde_json::from_str(self.text) {
-            Ok(tree) => Ok(tree),
+            Ok(OnceKeys(tree)) => tree,
             // Python prints maps that are no JSON.
             Err(error) if self.is_json() => yaml::parse(self.text).map_err(|_| error.to_string()),
             Err(_) if self.text.starts_with('<') => xml::parse(self.text),
             Err(_) => {
-                let lines = assign::parse(self.text).or_else(|| assign::table(self.text));
+                let lines = assign::parse(self.text).or_else(|| assign::table(self.text).map(Ok));
                 // `width: 640, height: 480, fx: 525` on one line.
                 let is_line = self.text.lines().count() == 1 && self.text.matches(": ").count() > 1;
                 let line = || is_line.then(|| yaml::parse(&format!("{{{}}}", self.text)).ok()).flatten();
-                lines.or_else(line).map_or_else(|| yaml::parse(self.text), Ok)
+                lines.or_else(|| line().map(Ok)).unwrap_or_else(|| yaml::parse(self.text))
             }
         })
     }

@@ -15,6 +15,7 @@ mod middlebury;
 mod mvsnet;
 mod names;
 mod nerf;
+mod once;
 mod orbslam;
 mod ost;
 mod realsense;
@@ -27,6 +28,7 @@ mod xml;
 mod yaml;
 mod zed;
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use depthplanes::Intrinsics;
@@ -161,7 +163,7 @@ pub const FORMS: &[CameraForm] = &[
     ),
     form(
         "json-yaml",
-        "JSON, YAML, XML, TOML and lines of `key = value`, of any nesting, and a table with a line of names: ROS CameraInfo and camera_calibration, OpenCV FileStorage, Open3D, BOP, RealSense, nerf (`fl_x`), Kalibr (cam0), Record3D, ARKit, and others that name `fx`, `K`, `camera_matrix` or `intrinsics`; matrices row by row or column by column. Of several that differ the one for depth, or the left one",
+        "JSON, YAML, XML, TOML and lines of `key = value`, of any nesting, and a table with a line of names: ROS CameraInfo and camera_calibration, OpenCV FileStorage, Open3D, BOP, RealSense, nerf (`fl_x`), Kalibr (cam0), Record3D, ARKit, and others that name `fx`, `K`, `camera_matrix` or `intrinsics`; matrices row by row or column by column. Of several that differ the one for depth, or the left one; a key that stands twice with different values is refused",
         r#"{"width": 640, "height": 480, "fx": 525, "fy": 525, "ppx": 319.5, "ppy": 239.5}"#,
         is_tree,
         parse_tree,
@@ -229,7 +231,9 @@ pub fn parse(text: &str) -> Result<CameraFile> {
 /// # Errors
 /// As [`parse`].
 pub fn parse_as(text: &str) -> Result<(CameraFile, &'static CameraForm)> {
-    let document = Document::new(text);
+    // Lines of old Macintosh programs end with CR alone.
+    let lines = if text.contains('\n') { Cow::Borrowed(text) } else { Cow::Owned(text.replace('\r', "\n")) };
+    let document = Document::new(&lines);
     if is_web_page(document.text) {
         return Err(unreadable("it is a web page: was a download page saved in place of the file?"));
     }

@@ -32,7 +32,7 @@ pub(super) fn one_of(mut found: Vec<Found>) -> Result<CameraFile> {
                 let [left, right] = [with(left), with(right)];
                 (distinct.len() == 2 && left.len() == 1 && right.len() == 1 && left != right).then(|| left[0])
             };
-            let depth = with("depth");
+            let depth: Vec<usize> = distinct.iter().copied().filter(|&at| is_depth(&lower(at))).collect();
             let choice = if depth.len() == 1 { Some(depth[0]) } else { None };
             let choice = choice.or_else(|| pair("left", "right")).or_else(|| pair("cam0", "cam1"));
             let choice = choice.or_else(|| pair("1", "2")).or_else(|| pair("0", "1"));
@@ -47,6 +47,14 @@ pub(super) fn one_of(mut found: Vec<Found>) -> Result<CameraFile> {
     }
     let note = format!("of {} cameras `{path}` is taken, not {}", distinct.len(), others.join(", "));
     Ok(camera.named(path).note(note))
+}
+
+/// Whether a way to a camera names that of the depth map; `depth_to_color` is none, and `aligned_depth` has the
+/// pixels of the other camera.
+fn is_depth(path: &str) -> bool {
+    let plain: String = path.chars().filter(|c| c.is_alphanumeric()).collect();
+    let is_other = ["depthto", "todepth", "aligneddepth", "depth2", "2depth"].iter().any(|name| plain.contains(name));
+    path.contains("depth") && !is_other
 }
 
 fn several(found: &[Found], distinct: &[usize]) -> crate::error::Error {

@@ -6,6 +6,8 @@
 
 use serde_json::{Map, Number, Value};
 
+use super::once::insert_once;
+
 /// Deeper trees than any camera file's are refused.
 const DEEPEST: usize = 32;
 
@@ -104,7 +106,7 @@ fn block(lines: &[Line<'_>], at: &mut usize, least: usize, depth: usize) -> Resu
             key_value(&line.text).ok_or_else(|| format!("the line `{}` is no `key: value`", shown(&line.text)))?;
         *at += 1;
         let value = self::value(lines, at, value, indent, depth)?;
-        map.entry(key.to_string()).or_insert(value);
+        insert_once(&mut map, key, value)?;
     }
     Ok(Value::Object(map))
 }
@@ -212,7 +214,7 @@ fn flow(rest: &mut &str, depth: usize) -> Result<Value, String> {
                 let (key, after) = rest.split_once(':').ok_or("a key has no value")?;
                 *rest = after;
                 let value = flow(rest, depth + 1)?;
-                map.entry(key.trim().trim_matches(['"', '\'']).to_string()).or_insert(value);
+                insert_once(&mut map, key.trim().trim_matches(['"', '\'']), value)?;
             }
             Some('[' | '{') => items.push(flow(rest, depth + 1)?),
             Some(_) => match flow(rest, depth + 1)? {

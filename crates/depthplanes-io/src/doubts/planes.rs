@@ -4,7 +4,7 @@ use depthplanes::detection::MetricPlane;
 use depthplanes::{Detector, Intrinsics, Plane, Sensor, ValueKind};
 
 use crate::outputs::Report;
-use crate::traps::{doubt_of_depth, length};
+use crate::traps::{EXACTLY, doubt_of_depth, length};
 
 /// The largest plane that a camera may see, m2: a field of 100 m x 100 m.
 const LARGEST_M2: f64 = 1e4;
@@ -18,8 +18,10 @@ pub(super) fn out_of_sight(report: &Report<'_>) -> Option<String> {
     };
     let odd: Vec<_> = report.detection.planes.iter().filter_map(doubt).collect();
     let (label, depth_m, remedy) = odd.first()?;
-    if report.frame.warnings.iter().any(|warning| warning.contains(remedy)) {
-        return None; // It was told of the whole map.
+    let is_told = |words: &str| report.frame.warnings.iter().any(|warning| warning.contains(words));
+    // It was told of the whole map, or of the pixels of the only odd plane.
+    if is_told(remedy) || odd.len() == 1 && is_told(EXACTLY) {
+        return None;
     }
     let others = match odd.len() {
         1 => String::new(),

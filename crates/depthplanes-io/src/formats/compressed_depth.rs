@@ -53,10 +53,6 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
     let [a, b] = parameters(bytes).ok_or_else(|| unreadable("fewer than 12 bytes"))?;
     if explains(a, b, &image.pixels) {
         image.quantisation = Some([a, b]);
-        image.warnings.push(format!(
-            "read as a 32FC1 topic: quantised inverse depth by the header's A = {a} and B = {b}; if the topic is 16UC1, \
-             state --encoding millimetre"
-        ));
     }
     Ok(image)
 }

@@ -1,7 +1,7 @@
 //! TIFF, one page of the file: integers or floats, one channel (or equal ones).
 //!
 //! In: strips or tiles, uncompressed, PackBits, LZW or deflate; without a page stated, the first of the largest pages that
-//! are no thumbnails. Out: `u8`, `u16` or `f32` values by the rules of `samples`. Unsigned integers of which 0 is white are
+//! are no thumbnails, and no colour pictures where there are others. Out: `u8`, `u16` or `f32` values by the rules of `samples`. Unsigned integers of which 0 is white are
 //! inverted as the standard says; floats are taken as they are, since they have no largest value to be subtracted from.
 
 use std::borrow::Cow;
@@ -126,6 +126,8 @@ struct Page {
     height: u32,
     /// A smaller version of another page, or a mask, by its own word.
     reduced: bool,
+    /// A colour picture: more channels than a value and its opacity.
+    colour: bool,
 }
 
 fn pages(bytes: &[u8], options: &DecodeOptions) -> Result<Vec<Page>> {
@@ -135,7 +137,8 @@ fn pages(bytes: &[u8], options: &DecodeOptions) -> Result<Vec<Page>> {
         let (width, height) = decoder.dimensions().map_err(from_tiff)?;
         let kind = decoder.find_tag_unsigned::<u32>(Tag::NewSubfileType).ok().flatten().unwrap_or(0);
         let old_kind = decoder.find_tag_unsigned::<u32>(Tag::SubfileType).ok().flatten().unwrap_or(0);
-        pages.push(Page { width, height, reduced: kind & 5 != 0 || old_kind == 2 });
+        let channels = decoder.find_tag_unsigned::<u16>(Tag::SamplesPerPixel).ok().flatten().unwrap_or(1);
+        pages.push(Page { width, height, reduced: kind & 5 != 0 || old_kind == 2, colour: channels > 2 });
         if !decoder.more_images() || pages.len() == MOST_PAGES {
             return Ok(pages);
         }
@@ -157,9 +160,11 @@ fn choose(pages: &[Page], options: &DecodeOptions) -> Result<(usize, Option<Stri
         };
     }
     let area = |page: &Page| u64::from(page.width) * u64::from(page.height);
-    let whole = |page: &&Page| !page.reduced || pages.iter().all(|page| page.reduced);
-    let largest = pages.iter().filter(whole).map(area).max().unwrap_or(0);
-    let chosen = pages.iter().position(|page| whole(&page) && area(page) == largest).unwrap_or(0);
+    // A value spread over channels is asked for by its encoding; else a colour picture stands beside the depth.
+    let fits = |page: &Page| [!page.reduced, options.channels || !page.colour];
+    let most = pages.iter().map(fits).max().unwrap_or_default();
+    let largest = pages.iter().filter(|page| fits(page) == most).map(area).max().unwrap_or(0);
+    let chosen = pages.iter().position(|page| fits(page) == most && area(page) == largest).unwrap_or(0);
     let note = (pages.len() > 1)
         .then(|| format!("page {} of {} is taken ({sizes}); --member states another", chosen + 1, pages.len()));
     Ok((chosen, note))

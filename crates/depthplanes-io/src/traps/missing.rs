@@ -53,43 +53,13 @@ fn largest_float(values: &[f32], is_depth: bool) -> Option<(f64, usize, &'static
 }
 
 /// The shortest text that is read as the same value.
-fn shown(value: f64) -> String {
+pub(super) fn shown(value: f64) -> String {
     let single = value as f32;
-    if f64::from(single) == value && value.abs() >= 1e7 { format!("{single:e}") } else { value.to_string() }
-}
-
-/// One largest value that fills a part of the map: a renderer's far clip, or a background.
-pub(super) fn far_clip(frame: &Frame, probe: &Probe) -> Option<String> {
-    let ValueKind::Depth { metres } = frame.sensor.value_kind else { return None };
-    let (largest, count) = probe.largest()?;
-    let share = count as f64 / probe.pixels as f64;
-    let others = &probe.valid[..probe.valid.len() - count];
-    if is_small(frame)
-        || share < 0.05
-        || others.len() < FEW
-        || frame.valid_range.is_some_and(|(_, high)| high == largest)
-    {
-        return None;
+    match f64::from(single) == value {
+        true if value.abs() >= 1e7 => format!("{single:e}"),
+        true => single.to_string(),
+        false => value.to_string(),
     }
-    // What is measured goes on to the values beside it. A clip lies apart, or it is a round number of metres that is far
-    // more common than any other value.
-    let next = others[others.len() - 1];
-    let commonest = others.chunk_by(|a, b| a == b).map(<[f64]>::len).max().unwrap_or(0);
-    if largest < 1.5 * next && !(is_round(largest * metres) && count > 8 * commonest) {
-        return None;
-    }
-    let (share, shown, next) = (percent(share), shown(largest), shown(next));
-    let shown_m = largest * metres;
-    Some(format!(
-        "{share} of the pixels are exactly {shown} ({shown_m:.4} m), and all others are {next} or less: a background or a \
-         far clip? try --missing {shown}"
-    ))
-}
-
-/// Whether a number of metres has one or two digits that are not 0.
-fn is_round(metres: f64) -> bool {
-    let digits = metres / 10f64.powf(metres.abs().log10().floor() - 1.0);
-    (digits - digits.round()).abs() < 1e-5
 }
 
 /// Values below 0, which count as missing.

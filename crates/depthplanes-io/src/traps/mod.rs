@@ -13,10 +13,12 @@ pub(crate) mod missing;
 pub(crate) mod packing;
 mod picture;
 mod probe;
+mod sentinel;
 mod source;
 mod unit;
 
 pub(crate) use probe::{Probe, is_small};
+pub(crate) use sentinel::EXACTLY;
 pub(crate) use unit::{doubt_of_depth, length};
 
 use crate::frame::Frame;
@@ -30,8 +32,8 @@ const ALONE: &[Look] = &[labels::labels, packing::kinect_raw];
 
 /// All other traps. Of a row the first that is found is told, since it explains the others.
 const TRAPS: &[&[Look]] = &[
-    &[missing::negative, missing::far_clip, source::sparse, missing::mostly],
-    &[source::enlarged, holes::interpolated],
+    &[missing::negative, sentinel::sentinel, source::sparse, missing::mostly],
+    &[source::enlarged, source::enlarged_a_little, holes::interpolated],
     &[
         packing::swapped,
         picture::eight_bits,

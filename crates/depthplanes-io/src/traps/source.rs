@@ -1,7 +1,7 @@
 //! Maps with more pixels than measurements, which `planar` works on at the size at which they were measured.
 
 use depthplanes::noise::{EnlargementFinder, SparseFinder};
-use depthplanes::with_view;
+use depthplanes::{DepthView, Pixel, with_view};
 
 use super::probe::{FEW, Probe};
 use crate::frame::Frame;
@@ -17,6 +17,54 @@ pub(super) fn enlarged(frame: &Frame, _: &Probe) -> Option<String> {
         rounded(x),
         rounded(y)
     ))
+}
+
+/// Fewest repeated columns, and rows, that tell.
+const REPEATED: usize = 8;
+
+/// Some of the columns and rows that were repeated: an enlargement by less than 2, which `planar` does not undo.
+pub(super) fn enlarged_a_little(frame: &Frame, _: &Probe) -> Option<String> {
+    let [columns, rows] = with_view!(frame.view().ok()?, view => repeated(&view))?;
+    let [x, y] =
+        [(frame.width, columns), (frame.height, rows)].map(|(side, repeated)| side as f64 / (side - repeated) as f64);
+    let rounded = |factor: f64| (100.0 * factor).round() / 100.0;
+    Some(format!(
+        "the map was enlarged {} x {} times by repeating some of its pixels, which makes steps of planes: give the map of {} x {} \
+         pixels that it was made from, with its camera",
+        rounded(x),
+        rounded(y),
+        frame.width - columns,
+        frame.height - rows
+    ))
+}
+
+/// How many columns and rows are those before them once more, if these are evenly spaced over the map.
+fn repeated<T: Pixel>(view: &DepthView<'_, T>) -> Option<[usize; 2]> {
+    let (width, height, validity) = (view.width(), view.height(), view.validity());
+    let is_same = |a: T, b: T| a == b || !validity.holds(a) && !validity.holds(b);
+    let mut columns = vec![true; width];
+    columns[0] = false;
+    for v in 0..height {
+        let row = view.row(v);
+        for (at, two) in (1..).zip(row.windows(2)) {
+            columns[at] &= is_same(two[0], two[1]);
+        }
+        if v % 16 == 0 && columns.iter().filter(|same| **same).count() < REPEATED {
+            return None;
+        }
+    }
+    let is_row = |v: usize| v > 0 && view.row(v - 1).iter().zip(view.row(v)).all(|(&a, &b)| is_same(a, b));
+    let rows: Vec<bool> = (0..height).map(is_row).collect();
+    Some([evenly_spaced(&columns)?, evenly_spaced(&rows)?])
+}
+
+/// How many there are, if one follows another after as many or one more, two at least, from end to end.
+fn evenly_spaced(marks: &[bool]) -> Option<usize> {
+    let at: Vec<usize> = (0..marks.len()).filter(|&at| marks[at]).collect();
+    let gaps = || at.windows(2).map(|two| two[1] - two[0]);
+    let (least, most) = (gaps().min()?, gaps().max()?);
+    let reaches_ends = at[0] <= most && marks.len() - at[at.len() - 1] <= most;
+    (at.len() >= REPEATED && least >= 2 && most <= least + 1 && reaches_ends).then_some(at.len())
 }
 
 /// Few pixels that were measured.

@@ -3,6 +3,7 @@
 use depthplanes::ValueKind;
 
 use super::probe::{FEW, Probe};
+use crate::encoding;
 use crate::frame::Frame;
 use crate::presets::{self, SensorPreset};
 
@@ -124,6 +125,13 @@ fn remedy(frame: &Frame, depth_m: f64) -> String {
                 }
                 let scale = [1e3, 1e-3].into_iter().find(|factor| is_likely(1.0 / factor)).map(|factor| factor * scale);
                 return scale.map_or("check --scale".into(), |scale| format!("try --scale {scale}"));
+            }
+            // A value spread over channels keeps its encoding, in another unit.
+            if encoding::by_name(frame.encoding).is_ok_and(|encoding| encoding.channels) {
+                let finer = [1e3, 1e2, 1e1, 1e4, 1e6].into_iter().find(|finer| OF_ROOMS_M.contains(&(depth_m / finer)));
+                return finer.map_or("check --encoding and --scale".into(), |finer| {
+                    format!("try --scale {} (map units per metre)", (finer / metres).round())
+                });
             }
             let units = [("metre", 1.0), ("millimetre", 1e-3), ("tum", 2e-4)];
             let named = units.iter().find(|(name, unit)| *name != frame.encoding && is_likely(unit / metres));
