@@ -2,9 +2,10 @@
 //! frame, in turn, so that the machine's drift meets all of them alike. Every answer is held against the first.
 //!
 //! `bench_planar ROUNDS DATA [PROGRAM]` writes one CSV row for each frame and number of threads: medians in microseconds,
-//! of the whole, of each stage, of the planes' outlines (which are not part of the whole), and of the copy. DATA: the folder
-//! of recorded frames. PROGRAM: another state of `depthplanes`, whose `detect --repeat` is timed in turn on the recorded ones.
+//! of the whole, of each stage, of the planes' outlines and of the ground (which are not part of the whole), and of the copy.
+//! DATA: the folder of recorded frames. PROGRAM: another state of `depthplanes`, whose `detect --repeat` is timed in turn on the recorded ones.
 
+use depthplanes::ground::{Ground, GroundFinder};
 use depthplanes::map::AnyView;
 use depthplanes::outline::Outliner;
 use depthplanes::scene::Spec;
@@ -50,7 +51,7 @@ fn main() -> Outcome<()> {
     let program = arguments.next();
     let stages = depthplanes::methods::find("planar")?.stages;
     println!(
-        "frame,width,height,threads,planes,total_us,{},outlines_us,copy_us,copies_of_the_frame,ns_per_pixel,times_one_thread,other_us,times_other",
+        "frame,width,height,threads,planes,total_us,{},outlines_us,ground_us,copy_us,copies_of_the_frame,ns_per_pixel,times_one_thread,other_us,times_other",
         stages.iter().map(|stage| format!("{stage}_us")).collect::<Vec<_>>().join(",")
     );
     for (file, encoding, [fx, fy, cx, cy]) in RECORDED {
@@ -108,12 +109,13 @@ fn bench(frame: &Frame<'_>, rounds: usize, mut other: Option<Command>) -> Outcom
             _ => ",".to_string(),
         };
         println!(
-            "\"{}\",{width},{height},{},{},{total:.1},{},{:.1},{copy:.1},{:.1},{:.2},{:.2},{against}",
+            "\"{}\",{width},{height},{},{},{total:.1},{},{:.1},{:.1},{copy:.1},{:.1},{:.2},{:.2},{against}",
             frame.name,
             run.threads,
             expected.planes.len(),
             per_stage.join(","),
             median(&mut run.outlines),
+            median(&mut run.ground),
             total / copy,
             1000.0 * total / (width * height) as f64,
             one_thread / total
@@ -130,6 +132,8 @@ struct Run {
     totals: Vec<f64>,
     stages: Vec<Vec<f64>>,
     outlines: Vec<f64>,
+    finder: GroundFinder,
+    ground: Vec<f64>,
 }
 
 impl Run {
@@ -141,6 +145,8 @@ impl Run {
             totals: Vec::new(),
             stages: Vec::new(),
             outlines: Vec::new(),
+            finder: GroundFinder::default(),
+            ground: Vec::new(),
         }
     }
 
@@ -170,6 +176,14 @@ impl Run {
         let start = Instant::now();
         black_box(self.outliner.outline(found, frame.sensor.intrinsics.as_ref())?);
         self.outlines.push(start.elapsed().as_secs_f64() * 1e6);
+        // Its memory is there from the first call on, as in a video.
+        let first: Ground = self.finder.find(frame.view, found, &frame.sensor)?.clone();
+        let start = Instant::now();
+        let ground = black_box(self.finder.find(frame.view, found, &frame.sensor)?);
+        self.ground.push(start.elapsed().as_secs_f64() * 1e6);
+        if *ground != first {
+            return Err(format!("{}: another ground of the same frame", frame.name).into());
+        }
         Ok(())
     }
 }

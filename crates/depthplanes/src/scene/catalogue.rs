@@ -6,6 +6,7 @@
 use super::clutter;
 use super::exact::unit;
 use super::pose::Pose;
+use super::robot;
 use super::room;
 use super::staged::Staged;
 use super::surfaces::{Place, Scene};
@@ -52,6 +53,11 @@ pub const SCENES: &[SceneInfo] = &[
         name: "random",
         about: "a room, a camera and clutter drawn from the seed: boxes, balls, columns, ramps",
         build: clutter::random,
+    },
+    SceneInfo {
+        name: "robot",
+        about: "a hall from a robot's height: boxes of 5 to 40 cm, and from the seed a ramp, three steps or a hole",
+        build: robot::robot,
     },
 ];
 

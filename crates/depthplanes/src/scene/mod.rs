@@ -34,6 +34,7 @@ mod exact;
 mod frame;
 mod pose;
 mod render;
+mod robot;
 mod room;
 mod sensors;
 mod shape;
