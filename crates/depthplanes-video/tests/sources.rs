@@ -41,10 +41,10 @@ fn all(source: &mut dyn Source) -> Vec<Result<VideoFrame, Error>> {
     std::iter::from_fn(|| source.next_frame()).collect()
 }
 
-/// The middle pixel, metres.
+/// The middle pixel, metres, to a micrometre.
 fn metres(frame: &VideoFrame) -> f64 {
     let depth = depthplanes::with_view!(frame.frame.view().unwrap(), view => f64::from(view.row(24)[32]));
-    frame.frame.sensor.value_kind.depth_m(depth).unwrap()
+    (frame.frame.sensor.value_kind.depth_m(depth).unwrap() * 1e6).round() / 1e6
 }
 
 #[test]

@@ -18,6 +18,8 @@ const DEPTH: &str = ".depth.png";
 
 /// What the pages of 7-Scenes state of its depth camera.
 const CAMERA: [f64; 4] = [585.0, 585.0, 320.0, 240.0];
+/// The size of its pictures.
+const CAMERA_SIZE: (usize, usize) = (640, 480);
 /// The value that means missing there.
 const MISSING: f64 = 65_535.0;
 
@@ -37,6 +39,7 @@ fn open(word: &str, options: &SourceOptions) -> Result<Box<dyn Source>> {
         } else {
             let [fx, fy, cx, cy] = CAMERA;
             read.intrinsics = Some(Intrinsics::new(fx, fy, cx, cy)?);
+            read.camera_size = read.camera_size.or(Some(CAMERA_SIZE));
         }
     }
     if read.encoding.is_none() && read.preset.is_none() {
