@@ -8,30 +8,36 @@
 //!
 //! A thin sample leaves gaps between values, scaled maps leave out values everywhere, and flying pixels lie between
 //! the steps. So the step is a low quantile of the gaps between values that repeat, sharpened by the mean of the gaps
-//! near it. On planes along whose rows or columns the value is constant, repeats say nothing; there the step is that
-//! between terraces, or else what all values are multiples of, which is 0 for true floats.
+//! near it. On planes along whose rows or columns the value is constant, repeats say nothing; there the step is what
+//! all values are multiples of, which is 0 for true floats.
 
 use super::lanes::{LANES, Lanes};
 use super::space::Space;
 use crate::map::{DepthView, Pixel};
 use crate::util::memory::reserve_to;
 
-mod knots;
 mod level;
 mod sample;
-mod terraces;
 #[cfg(test)]
 mod tests;
 mod units;
 
-use knots::{BINS, ENOUGH, Knot, QUANTILE, between, bin, middle, sharpened};
-use level::{LEAST, Level, REPEATS};
-use sample::Sample;
-use terraces::Terraces;
+use level::{LEAST, Level};
+use sample::{SHIFT, Sample};
 
+/// Entries of a table over q: eight octaves of eight entries.
+const BINS: usize = 64;
+/// Units in the last place by which a value may lie below an eighth of an octave and belong to it: single precision
+/// puts 1/0.8 below 1.25.
+const NEAR: u32 = 16;
+/// Fewest gaps of a stretch.
+const ENOUGH: usize = 12;
 /// Share of the pixels whose values may be left out, the rarest first: flying pixels and interpolated ones. In a
 /// sample in which values occur by chance, these are no more than a quarter of the values.
 const RARE: f64 = 0.1;
+/// A value repeats if it starts at least so often in rows and in columns: on a map that is its own mirror image true
+/// floats occur twice.
+const REPEATS: usize = 3;
 /// Share of the pixels of a stretch whose values have to repeat, equal to the quantile. Where a level floor and a
 /// level wall cross in one stretch, a step between every fifth of their lines makes so many.
 const REPEATED: f64 = QUANTILE;
@@ -39,6 +45,10 @@ const REPEATED: f64 = QUANTILE;
 const DENSE: u32 = 8;
 /// Higher numbers of repeats are not told apart.
 const OFTEN: usize = 32;
+/// The quantile of the gaps: fewer than a fifth of them are shorter than a step, next to values between the steps;
+/// and a fifth of the gaps is one step long as long as a fifth of the values is seen.
+const QUANTILE: f64 = 0.2;
+
 /// The share of rounding that follows the signal instead of being dithered, for steps of that square and pixels that
 /// scatter with the variance `scatter`: none from a scatter of half a step on. (The exact share is an exponential of
 /// the ratio; this uses no function that differs between machines.)
@@ -99,10 +109,22 @@ impl Rounding {
     }
 }
 
+/// The eighth of an octave in which q lies, from 2^-127 on.
+#[inline(always)]
+fn bin(q: f32) -> u32 {
+    ((q.to_bits() & 0x7fff_ffff) + NEAR) >> SHIFT
+}
+
 /// The entry for q of a table that begins with the eighth of an octave of number `first`.
 #[inline(always)]
 fn place(q: f64, first: u32) -> usize {
     bin(q as f32).saturating_sub(first).min(BINS as u32 - 1) as usize
+}
+
+/// The middle of an eighth of an octave.
+fn middle(bin: u32) -> f64 {
+    let [low, high] = [bin, bin + 1].map(|bin| f64::from(f32::from_bits(bin << SHIFT)));
+    (low * high).sqrt()
 }
 
 /// Finds what values are rounded to; reuses its memory.
@@ -112,7 +134,14 @@ pub struct RoundingFinder {
     /// q of each value that occurs, ascending.
     levels: Vec<Level>,
     gaps: Vec<f64>,
-    terraces: Terraces,
+}
+
+/// A step and where it was found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Knot {
+    /// The middle of its levels.
+    q: f64,
+    step: f64,
 }
 
 impl RoundingFinder {
@@ -130,26 +159,24 @@ impl RoundingFinder {
     /// # Ok::<(), depthplanes::Error>(())
     /// ```
     pub fn find<T: Pixel>(&mut self, map: &DepthView<'_, T>, space: Space) -> Rounding {
-        let RoundingFinder { sample, levels, gaps, terraces } = self;
+        let RoundingFinder { sample, levels, gaps } = self;
         let whole: f64 = if T::IS_INTEGER { 1.0 } else { 0.0 };
         sample.take(map);
         reserve_to(levels, sample::MOST);
         reserve_to(gaps, sample::MOST);
-        terraces.reserve();
         levels.extend(sample.sorted().map(|counted| Level::of(counted, space)));
         if let Space::InverseDepth { .. } = space {
             levels.reverse();
         }
         let unit = units::common(levels, space, whole);
-        let on_lines = if are_on_lines(levels) { terraced(map, levels, terraces, unit, space) } else { None };
-        let by_values = || if sample.is_thin() { None } else { table(levels, gaps, unit, space) };
-        on_lines.or_else(by_values).unwrap_or(Rounding::of_values(unit, space))
+        let table = if sample.is_thin() { None } else { table(levels, gaps, unit, space) };
+        table.unwrap_or(Rounding::of_values(unit, space))
     }
 }
 
 /// The steps over q, from levels that are multiples of `unit`; `None` if they tell no more than that unit.
 fn table(levels: &[Level], gaps: &mut Vec<f64>, unit: f64, space: Space) -> Option<Rounding> {
-    let first = first_bin(levels)?;
+    let first = bin(levels.last()?.q as f32).saturating_sub(BINS as u32 - 1);
     let all: u32 = levels.iter().map(|level| level.weight).sum();
     let mut knots = [Knot::default(); BINS];
     let mut bounds = [f64::INFINITY; BINS];
@@ -174,45 +201,15 @@ fn table(levels: &[Level], gaps: &mut Vec<f64>, unit: f64, space: Space) -> Opti
         knots[count] = Knot { q: middle(low.midpoint(high)), step };
         count += 1;
     }
-    is_told.then(|| interpolated(&knots[..count], &bounds, first, unit, space))
-}
-
-/// The steps between terraces of a map with these levels; `None` if it has none, or if they tell no more than the unit.
-fn terraced<T: Pixel>(
-    map: &DepthView<'_, T>,
-    levels: &[Level],
-    terraces: &mut Terraces,
-    unit: f64,
-    space: Space,
-) -> Option<Rounding> {
-    let (knots, count) = terraces.knots(map, space, unit);
-    let knots = &knots[..count];
-    let is_told = knots.iter().any(|knot| knot.step > 1.5 * unit * space.unit(knot.q));
-    let first = first_bin(levels).filter(|_| is_told)?;
-    Some(interpolated(knots, &[f64::INFINITY; BINS], first, unit, space))
-}
-
-/// The first entry of a table for levels that are sorted by q.
-fn first_bin(levels: &[Level]) -> Option<u32> {
-    Some(bin(levels.last()?.q as f32).saturating_sub(BINS as u32 - 1))
-}
-
-/// Whether most values occur along one row or one column: the surfaces of a camera that stands level, without noise.
-fn are_on_lines(levels: &[Level]) -> bool {
-    let weight =
-        |of: &dyn Fn(&Level) -> bool| levels.iter().filter(|level| of(level)).map(|level| level.weight).sum::<u32>();
-    let on_lines = weight(&|level| level.is_on_line() && (level.repeats as usize) < REPEATS);
-    f64::from(on_lines) >= 0.5 * f64::from(weight(&|_| true))
-}
-
-/// The table between the steps that are known, no more than the bounds and no less than the unit.
-fn interpolated(knots: &[Knot], bounds: &[f64; BINS], first: u32, unit: f64, space: Space) -> Rounding {
+    if !is_told {
+        return None;
+    }
     let mut steps = [0.0; BINS];
     for ((bin, step), most) in (first..).zip(&mut steps).zip(bounds) {
         let q = middle(bin);
-        *step = between(knots, q).min(*most).max(unit * space.unit(q)) as f32;
+        *step = between(&knots[..count], q).min(most).max(unit * space.unit(q)) as f32;
     }
-    Rounding(Steps::Table { first, steps })
+    Some(Rounding(Steps::Table { first, steps }))
 }
 
 /// How many of the levels make the next stretch: whole bins, with enough gaps in it and in the rest.
@@ -242,7 +239,8 @@ fn look(levels: &[Level], gaps: &mut Vec<f64>, unit: f64, space: Space) -> Found
     let all: u32 = weights.iter().sum();
     let is_share = |weight: u32, share: f64| f64::from(weight) >= share * f64::from(all);
     let repeats = is_share(all - weights[..REPEATS].iter().sum::<u32>(), REPEATED);
-    let on_lines = levels.iter().filter(|level| level.is_on_line()).map(|level| level.weight).sum();
+    let on_line = |level: &&Level| (level.weight - level.repeats) as usize >= REPEATS;
+    let on_lines = levels.iter().filter(on_line).map(|level| level.weight).sum();
     if !repeats && !is_share(on_lines, 1.0 - RARE) {
         return Found::Nothing;
     }
@@ -266,4 +264,39 @@ fn look(levels: &[Level], gaps: &mut Vec<f64>, unit: f64, space: Space) -> Found
     let unit = unit * space.unit(levels[levels.len() / 2].q);
     let is_dense = all >= 2 * DENSE * levels.len() as u32;
     if repeats { Found::Step(sharpened(gaps, low, unit, is_dense)) } else { Found::AtMost(low) }
+}
+
+/// The mean of the gaps near `low`: steps of one and a half millimetres stored as whole ones are gaps of one and of
+/// two. Gaps of two steps do not count, for a value may be missing between; and where many are missing, a gap of one
+/// unit is taken as one unit.
+fn sharpened(gaps: &[f64], low: f64, unit: f64, is_dense: bool) -> f64 {
+    if low <= 1.5 * unit && !is_dense {
+        return unit;
+    }
+    let [from, to] = [(0.7 * low).min(low - 1.2 * unit), (1.4 * low).max(low + 1.2 * unit)];
+    let near = gaps.iter().filter(|gap| (from..=to).contains(*gap));
+    let (count, sum) = near.fold((0.0, 0.0), |(count, sum), gap| (count + 1.0, sum + gap));
+    sum / count
+}
+
+/// The step at q, interpolated linearly between the middles of stretches; beyond the outermost it follows a power of q.
+fn between(knots: &[Knot], q: f64) -> f64 {
+    let after = knots.partition_point(|knot| knot.q < q);
+    let before = after.checked_sub(1).map(|before| knots[before]);
+    match (before, knots.get(after)) {
+        (Some(low), Some(high)) => low.step + (high.step - low.step) * (q - low.q) / (high.q - low.q),
+        (None, Some(first)) => beyond(first, knots.get(1), q),
+        (Some(last), None) => beyond(&last, after.checked_sub(2).map(|at| &knots[at]), q),
+        (None, None) => 0.0,
+    }
+}
+
+/// The step at q beyond the middle of the outermost stretch, by the power of q that leads to the step of the next
+/// stretch: 0 as for disparity, 1, or 2 as for depth. It uses no logarithm, which differs between machines.
+fn beyond(outermost: &Knot, next: Option<&Knot>, q: f64) -> f64 {
+    let Some(next) = next.filter(|next| next.step > 0.0 && outermost.step > 0.0) else { return outermost.step };
+    let [low, high] = if next.q < outermost.q { [next, outermost] } else { [outermost, next] };
+    let (grown, by) = (high.step / low.step, high.q / low.q);
+    let power = i32::from(grown * grown > by) + i32::from(grown * grown > by.powi(3));
+    outermost.step * (q / outermost.q).powi(power)
 }

@@ -7,10 +7,6 @@ use crate::noise::space::Space;
 /// these are jumps in depth.
 pub(super) const LEAST: usize = 8;
 
-/// A value repeats if it starts at least so often in rows and in columns: on a map that is its own mirror image true
-/// floats occur twice.
-pub(super) const REPEATS: usize = 3;
-
 /// A value that occurs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Level {
@@ -27,10 +23,5 @@ impl Level {
         let Counted { value, rows, columns } = counted;
         let value = f64::from(value);
         Level { value, q: space.q(value), repeats: rows.min(columns), weight: rows + columns }
-    }
-
-    /// Whether it occurs along a row or a column again and again.
-    pub(super) fn is_on_line(&self) -> bool {
-        (self.weight - self.repeats) as usize >= REPEATS
     }
 }
