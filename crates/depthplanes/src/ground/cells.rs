@@ -20,6 +20,10 @@ pub(super) struct Cells {
     pub(super) marks: Vec<u8>,
     /// Depth, metres, of one of the pixels that carry the mark; 0 of cells that are neither obstacle nor drop.
     pub(super) depths: Vec<f32>,
+    /// The ray of each cell's middle; `None` where the lens has none.
+    pub(super) rays: Vec<Option<[f64; 3]>>,
+    /// The sensor and the map's width that the rays are of.
+    rays_of: Option<(Sensor, usize)>,
 }
 
 impl Cells {
@@ -34,13 +38,15 @@ impl Cells {
         if cells == 0 {
             return;
         }
-        vectorised(|| {
-            for (of_row, pixels) in self.marks.chunks_exact_mut(self.columns).zip(marks.chunks_exact(CELL * width)) {
-                for (column, mark) in of_row.iter_mut().enumerate() {
-                    *mark = cell_mark(pixels, column * CELL, width);
-                }
-            }
-        });
+        self.cast(sensor, width);
+        vectorised(
+            // Inlined by order: a closure of its own would be compiled without the vectors.
+            #[inline(always)]
+            || {
+                let rows = self.marks.chunks_exact_mut(self.columns).zip(marks.chunks_exact(CELL * width));
+                rows.for_each(|(cells, pixels)| mark_row(pixels, width, cells));
+            },
+        );
         for at in 0..cells {
             let mark = self.marks[at];
             if mark == OBSTACLE || mark == DROP {
@@ -52,10 +58,17 @@ impl Cells {
         }
     }
 
-    /// Middle of a cell, pixels.
-    pub(super) fn middle(&self, at: usize) -> [f64; 2] {
+    /// The rays of the cells' middles, which are those of the frame before if the camera is.
+    fn cast(&mut self, sensor: &Sensor, width: usize) {
+        let cells = self.marks.len();
+        if self.rays.len() == cells && self.rays_of == Some((*sensor, width)) {
+            return;
+        }
         let half = (CELL as f64 - 1.0) / 2.0;
-        [(at % self.columns * CELL) as f64 + half, (at / self.columns * CELL) as f64 + half]
+        let middle = |at: usize| (at * CELL) as f64 + half;
+        self.rays.clear();
+        self.rays.extend((0..cells).map(|at| sensor.ray(middle(at % self.columns), middle(at / self.columns))));
+        self.rays_of = Some((*sensor, width));
     }
 }
 
@@ -67,24 +80,35 @@ fn marked_pixel(marks: &[u8], width: usize, [u, v]: [usize; 2], mark: u8) -> [us
     std::iter::once(middle).filter(is_marked).chain(all.filter(is_marked)).next().unwrap_or(middle)
 }
 
-/// The mark of a cell: obstacle before drop, floor if it is neither.
+/// Cells whose pixels are counted at a time.
+const CELLS: usize = 16;
+
+/// The marks of a row of cells: obstacle before drop, floor if it is neither.
 #[inline(always)]
-fn cell_mark(pixels: &[u8], column: usize, width: usize) -> u8 {
-    let words: [u64; CELL] = std::array::from_fn(|row| {
-        let start = row * width + column;
-        u64::from_le_bytes(pixels[start..start + CELL].try_into().expect("eight pixels"))
-    });
-    // A mark is one bit of a byte: bytes are added up, then those of the word.
-    let count = |mark: u8| {
-        let bytes: u64 = words.iter().map(|word| (word >> mark.trailing_zeros()) & ONES).sum();
-        bytes.wrapping_mul(ONES) >> 56
-    };
-    let [floor, obstacle, drop] = [FLOOR, OBSTACLE, DROP].map(count);
-    match () {
-        () if obstacle >= ENOUGH => OBSTACLE,
-        () if drop >= ENOUGH => DROP,
-        () if floor >= 2 * ENOUGH => FLOOR,
-        () => UNKNOWN,
+fn mark_row(pixels: &[u8], width: usize, cells: &mut [u8]) {
+    for (part, cells) in cells.chunks_mut(CELLS).enumerate() {
+        // Eight bytes of counts for each cell, one of each column of its pixels: of floor in the lower four bits, of obstacles
+        // in the upper ones; and of drops.
+        let (mut counts, mut drops) = ([0u64; CELLS], [0u64; CELLS]);
+        for row in pixels.chunks_exact(width) {
+            let (words, _) = row[part * CELLS * CELL..][..cells.len() * CELL].as_chunks::<CELL>();
+            for ((count, drop), word) in counts.iter_mut().zip(&mut drops).zip(words) {
+                let word = u64::from_le_bytes(*word);
+                *count += (word & (ONES * FLOOR as u64)) | ((word & (ONES * OBSTACLE as u64)) << 3);
+                *drop += (word >> DROP.trailing_zeros()) & ONES;
+            }
+        }
+        for ((cell, count), drop) in cells.iter_mut().zip(counts).zip(drops) {
+            // The sum of a word's bytes is the uppermost one of the product.
+            let sum = |bytes: u64| bytes.wrapping_mul(ONES) >> 56;
+            let (floor, obstacle, drop) = (sum(count & (ONES * 15)), sum(count >> 4 & (ONES * 15)), sum(drop));
+            *cell = match () {
+                () if obstacle >= ENOUGH => OBSTACLE,
+                () if drop >= ENOUGH => DROP,
+                () if floor >= 2 * ENOUGH => FLOOR,
+                () => UNKNOWN,
+            };
+        }
     }
 }
 

@@ -88,7 +88,8 @@ pub(super) fn find(
     camera: &Intrinsics,
     labels: &mut Vec<u16>,
 ) -> Option<Floor> {
-    let level = || metric(planes).filter(|(_, plane)| angle_deg(plane.plane.normal, vote.up) <= LEVEL_DEG);
+    let least_cosine = LEVEL_DEG.to_radians().cos();
+    let level = || metric(planes).filter(move |(_, plane)| dot(plane.plane.normal, vote.up) >= least_cosine);
     let all: usize = level().map(|(plane, _)| plane.pixel_count).sum();
     let mut best: Option<(f64, usize)> = None;
     for (plane, base) in level() {

@@ -2,8 +2,10 @@
 //!
 //! A pixel of depth z on the ray r is `h = z (n . r) + d` above the floor `n . P + d = 0`. Along a row n . r is affine, so
 //! a pixel takes one multiplication and addition for n . r, one for h, and comparisons with the margin, which holds for a
-//! block of pixels.
+//! block of pixels. Planes say more than heights do: pixels of the floor's pieces are floor, and those of upright planes are
+//! none, down to the crease between them.
 
+use super::class::ClassifiedPlane;
 use super::floor::Floor;
 use super::space::{dot, height_variance};
 use crate::camera::ValueKind;
@@ -39,6 +41,9 @@ const SIGNIFICANT: f64 = 4.0;
 const FARTHEST_M: f64 = 20.0;
 /// Columns and rows that share a margin; over them the range of the floor changes by a tenth.
 const BLOCK: [usize; 2] = [64, 8];
+/// Degrees between the floor and planes that stand on it, such as walls and sides of boxes: their pixels are none of the
+/// floor's, however near to it. Ramps are less steep than the first, undersides more than the second.
+const UPRIGHT_DEG: std::ops::RangeInclusive<f64> = 60.0..=120.0;
 /// Pieces of the floor whose pixels are floor whatever their height: the largest.
 const PIECES: usize = 4;
 
@@ -71,15 +76,25 @@ impl<'a> Margin<'a> {
     }
 }
 
-/// Marks the pixels of a map, row by row.
-pub(super) fn mark(map: AnyView<'_>, found: &Detection, sensor: &Sensor, floor: &Floor, marks: &mut Vec<u8>) {
-    marks.clear();
+/// Marks the pixels of a map, row by row. `planes` are those of the detection, in its order.
+pub(super) fn mark(
+    map: AnyView<'_>,
+    found: &Detection,
+    sensor: &Sensor,
+    floor: &Floor,
+    planes: &[ClassifiedPlane],
+    marks: &mut Vec<u8>,
+) {
     marks.resize(found.labels.len(), UNKNOWN);
     let margin = Margin::new(floor, found, sensor);
     let mut pieces = [0; PIECES];
     pieces.iter_mut().zip(&floor.labels).for_each(|(piece, &label)| *piece = label);
-    let rows = Rows { sensor, floor, margin, labels: &found.labels, pieces };
-    with_view!(map, view => vectorised(|| rows.mark(view, marks)));
+    let rows = Rows { sensor, floor, margin, labels: &found.labels, planes, pieces };
+    with_view!(map, view => vectorised(
+        // Inlined by order: a closure of its own would be compiled without the vectors.
+        #[inline(always)]
+        || rows.mark(view, marks),
+    ));
 }
 
 struct Rows<'a> {
@@ -87,6 +102,7 @@ struct Rows<'a> {
     floor: &'a Floor,
     margin: Margin<'a>,
     labels: &'a [u16],
+    planes: &'a [ClassifiedPlane],
     pieces: [u16; PIECES],
 }
 
@@ -109,7 +125,10 @@ impl Rows<'_> {
             let bottom = (top + BLOCK[1]).min(height);
             for first in (0..width).step_by(BLOCK[0]) {
                 let last = (first + BLOCK[0]).min(width);
-                let Some([above, below]) = self.lines([first, last], [top, bottom]) else { continue };
+                let Some([above, below]) = self.lines([first, last], [top, bottom]) else {
+                    (top..bottom).for_each(|v| marks[v * width + first..v * width + last].fill(UNKNOWN));
+                    continue;
+                };
                 let rows = (bottom - top - 1).max(1) as f32;
                 for v in top..bottom {
                     let share = (v - top) as f32 / rows;
@@ -144,7 +163,7 @@ impl Rows<'_> {
             ValueKind::Depth { metres } => {
                 let metres = metres as f32;
                 let height = |value: f32, slope: f32| value * metres * slope + line.height;
-                self.mark_by(view, values, labels, marks, line, height);
+                self.mark_sized(view, values, labels, marks, line, height);
             }
             ValueKind::InverseDepth { slope: scale, offset } => {
                 let (scale, offset) = (scale as f32, offset as f32);
@@ -152,9 +171,26 @@ impl Rows<'_> {
                     let inverse = scale * value + offset;
                     if inverse > 0.0 { slope / inverse + line.height } else { f32::NAN }
                 };
-                self.mark_by(view, values, labels, marks, line, height);
+                self.mark_sized(view, values, labels, marks, line, height);
             }
-            ValueKind::Disparity => (), // not metric, and so without a floor
+            ValueKind::Disparity => marks.fill(UNKNOWN), // not metric, and so without a floor
+        }
+    }
+
+    /// As `mark_by`, which is compiled for whole blocks by themselves: their vectors have no rest.
+    #[inline(always)]
+    fn mark_sized<T: Pixel>(
+        &self,
+        view: DepthView<'_, T>,
+        values: &[T],
+        labels: &[u16],
+        marks: &mut [u8],
+        line: Line,
+        height: impl Fn(f32, f32) -> f32,
+    ) {
+        match values.first_chunk::<{ BLOCK[0] }>() {
+            Some(values) => self.mark_by(view, values, labels, marks, line, height),
+            None => self.mark_by(view, values, labels, marks, line, height),
         }
     }
 
@@ -170,6 +206,7 @@ impl Rows<'_> {
     ) {
         let (valid, [a, b, c, d]) = (view.validity(), self.pieces);
         let (labels, marks) = (&labels[..values.len()], &mut marks[..values.len()]);
+        let mut is_doubtful = false;
         // By number, which the compiler makes vectors of.
         for at in 0..values.len() {
             let (value, label) = (values[at], labels[at]);
@@ -181,6 +218,21 @@ impl Rows<'_> {
             is = if is_piece { FLOOR } else { is };
             is = if height > CLEARANCE_M as f32 { OVERHEAD } else { is };
             marks[at] = if valid.holds(value) & (height.abs() < f32::INFINITY) { is } else { UNKNOWN };
+            is_doubtful |= (label != 0) & !is_piece & (marks[at] == FLOOR);
+        }
+        if is_doubtful {
+            self.mark_upright(labels, marks);
+        }
+    }
+
+    /// Pixels of upright planes are no floor, even where they are too low to tell by their height.
+    fn mark_upright(&self, labels: &[u16], marks: &mut [u8]) {
+        for (mark, &label) in marks.iter_mut().zip(labels).filter(|(mark, label)| **mark == FLOOR && **label != 0) {
+            let ClassifiedPlane { slope_deg, height_m, .. } = self.planes[usize::from(label) - 1];
+            if slope_deg.is_some_and(|slope| UPRIGHT_DEG.contains(&slope)) {
+                // The sides of a hole are below the floor.
+                *mark = if height_m.is_some_and(|height| height < 0.0) { DROP } else { OBSTACLE };
+            }
         }
     }
 }

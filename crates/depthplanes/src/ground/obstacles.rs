@@ -4,8 +4,8 @@ use super::cells::{CELL, Cells};
 use super::marks::{DROP, OBSTACLE};
 use super::standing::{Spot, Standing};
 use crate::detection::PixelBox;
-use crate::sensor::Sensor;
 use crate::util::memory::reserve_to;
+use crate::util::union_find;
 
 /// Something that a wheel does not pass: a thing on the floor, or a hole in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,98 +34,137 @@ const CONNECTED: f32 = 1.08;
 /// Finds the obstacles; reuses its memory.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Obstacles {
-    stack: Vec<u32>,
+    /// A forest of connected cells; a root is its tree's first cell.
+    parents: Vec<u32>,
+    /// Of roots: cells of the tree.
+    sizes: Vec<u32>,
+    /// Of roots of trees that are large enough: number in `extents`.
+    numbers: Vec<u32>,
+    extents: Vec<Extent>,
     /// Of each cell of an obstacle its distance along the floor, metres, in obstacles that are large enough; 0 elsewhere.
     pub(super) distances_m: Vec<f32>,
-    members: Vec<u32>,
-    seen: Vec<bool>,
 }
 
 impl Obstacles {
     /// The obstacles, the nearest first.
-    pub(super) fn find(&mut self, cells: &Cells, standing: &Standing, sensor: &Sensor, obstacles: &mut Vec<Obstacle>) {
-        let count = cells.marks.len();
-        self.seen.clear();
-        self.seen.resize(count, false);
-        self.distances_m.clear();
-        self.distances_m.resize(count, 0.0);
-        reserve_to(&mut self.stack, count);
-        reserve_to(&mut self.members, count);
-        obstacles.clear();
-        reserve_to(obstacles, count / LEAST_CELLS + 1);
-        for start in 0..count {
-            let mark = cells.marks[start];
-            if self.seen[start] || (mark != OBSTACLE && mark != DROP) {
-                continue;
-            }
-            self.collect(cells, start);
-            if self.members.len() >= LEAST_CELLS {
-                obstacles.extend(self.describe(cells, standing, sensor, mark == DROP));
-            }
-        }
+    pub(super) fn find(&mut self, cells: &Cells, standing: &Standing, obstacles: &mut Vec<Obstacle>) {
+        self.connect(cells);
+        self.measure(cells, standing);
+        reserve_to(obstacles, self.parents.len() / LEAST_CELLS + 1);
+        obstacles.extend(self.extents.iter().filter_map(Extent::obstacle));
         obstacles.sort_unstable_by(|a, b| {
             let place = |of: &Obstacle| (of.bounding_box.v_min, of.bounding_box.u_min);
             a.distance_m.total_cmp(&b.distance_m).then_with(|| place(a).cmp(&place(b)))
         });
     }
 
-    /// The cells connected with one, into `members`.
-    fn collect(&mut self, cells: &Cells, start: usize) {
-        self.members.clear();
-        self.stack.push(start as u32);
-        self.seen[start] = true;
-        while let Some(at) = self.stack.pop() {
-            self.members.push(at);
-            let at = at as usize;
-            let (column, row) = (at % cells.columns, at / cells.columns);
-            for v in row.saturating_sub(1)..=(row + 1).min(cells.rows - 1) {
-                for u in column.saturating_sub(1)..=(column + 1).min(cells.columns - 1) {
-                    let next = v * cells.columns + u;
-                    if !self.seen[next] && is_connected(cells, at, next) {
-                        self.seen[next] = true;
-                        self.stack.push(next as u32);
-                    }
+    /// Unites each cell of an obstacle with those of its eight neighbours that come before it.
+    fn connect(&mut self, cells: &Cells) {
+        self.parents.clear();
+        self.parents.extend(0..cells.marks.len() as u32);
+        let columns = cells.columns;
+        for at in (0..cells.marks.len()).filter(|&at| is_obstacle(cells.marks[at])) {
+            let (column, row) = (at % columns, at / columns);
+            let (is_left, is_right) = (column > 0, column + 1 < columns);
+            let mut unite_with = |is_there: bool, back: usize| {
+                if is_there && is_connected(cells, at, at - back) {
+                    union_find::unite(&mut self.parents, at as u32, (at - back) as u32);
                 }
-            }
+            };
+            unite_with(is_left, 1);
+            unite_with(row > 0 && is_left, columns + 1);
+            unite_with(row > 0, columns);
+            unite_with(row > 0 && is_right, columns - 1);
         }
     }
 
-    /// The obstacle that `members` are; `None` if the lens has rays for none of them.
-    fn describe(&mut self, cells: &Cells, standing: &Standing, sensor: &Sensor, is_drop: bool) -> Option<Obstacle> {
-        let (mut nearest_m, mut nearest): (f64, Option<Spot>) = (f64::INFINITY, None);
-        let (mut across, mut height) = ([f64::INFINITY, f64::NEG_INFINITY], 0.0f64);
-        let mut bounds = [usize::MAX, usize::MAX, 0, 0];
-        for &at in &self.members {
-            let at = at as usize;
-            let [u, v] = cells.middle(at);
-            let Some(ray) = sensor.ray(u, v) else { continue };
-            let depth = f64::from(cells.depths[at]);
-            let spot = standing.spot(ray.map(|r| r * depth));
-            // What is seen of a hole lies behind its edge: the ray passes the floor's level there.
-            let place = if is_drop { standing.on_floor(ray).unwrap_or(spot) } else { spot };
-            let distance = place.distance_m();
-            self.distances_m[at] = distance as f32;
-            if distance < nearest_m {
-                (nearest_m, nearest) = (distance, Some(place));
-            }
-            across = [across[0].min(place.right_m), across[1].max(place.right_m)];
-            height = if is_drop { height.min(spot.height_m) } else { height.max(spot.height_m) };
-            let (column, row) = (at % cells.columns, at / cells.columns);
-            bounds = [bounds[0].min(column), bounds[1].min(row), bounds[2].max(column), bounds[3].max(row)];
+    /// Measures each tree that is large enough.
+    fn measure(&mut self, cells: &Cells, standing: &Standing) {
+        let count = cells.marks.len();
+        let is_one = |at: &usize| is_obstacle(cells.marks[*at]);
+        self.sizes.clear();
+        self.sizes.resize(count, 0);
+        for at in (0..count).filter(is_one) {
+            // The root comes before, and so do all on the way to it: their parents are roots by now.
+            self.parents[at] = self.parents[self.parents[at] as usize];
+            self.sizes[self.parents[at] as usize] += 1;
         }
-        let nearest = nearest?;
+        self.distances_m.clear();
+        self.distances_m.resize(count, 0.0);
+        self.numbers.resize(count, 0);
+        reserve_to(&mut self.extents, count / LEAST_CELLS + 1);
+        for at in (0..count).filter(is_one) {
+            let root = self.parents[at] as usize;
+            if (self.sizes[root] as usize) < LEAST_CELLS {
+                continue;
+            }
+            if root == at {
+                self.numbers[root] = self.extents.len() as u32;
+                self.extents.push(Extent::new(cells.marks[at] == DROP));
+            }
+            let extent = &mut self.extents[self.numbers[root] as usize];
+            self.distances_m[at] = extent.add(cells, at, standing).unwrap_or(0.0);
+        }
+    }
+}
+
+/// How far the cells of an obstacle reach.
+#[derive(Clone, Copy, Debug)]
+struct Extent {
+    is_drop: bool,
+    nearest: Option<Spot>,
+    nearest_m: f64,
+    across_m: [f64; 2],
+    height_m: f64,
+    /// Columns and rows of cells: least of both, largest of both.
+    bounds: [usize; 4],
+}
+
+impl Extent {
+    fn new(is_drop: bool) -> Self {
+        let across_m = [f64::INFINITY, f64::NEG_INFINITY];
+        let bounds = [usize::MAX, usize::MAX, 0, 0];
+        Extent { is_drop, nearest: None, nearest_m: f64::INFINITY, across_m, height_m: 0.0, bounds }
+    }
+
+    /// Adds a cell; its distance along the floor, or `None` if the lens has no ray for it.
+    fn add(&mut self, cells: &Cells, at: usize, standing: &Standing) -> Option<f32> {
+        let ray = cells.rays[at]?;
+        let depth = f64::from(cells.depths[at]);
+        let spot = standing.spot(ray.map(|r| r * depth));
+        // What is seen of a hole lies behind its edge: the ray passes the floor's level there.
+        let place = if self.is_drop { standing.on_floor(ray).unwrap_or(spot) } else { spot };
+        let distance = place.distance_m();
+        if distance < self.nearest_m {
+            (self.nearest_m, self.nearest) = (distance, Some(place));
+        }
+        self.across_m = [self.across_m[0].min(place.right_m), self.across_m[1].max(place.right_m)];
+        self.height_m = if self.is_drop { self.height_m.min(spot.height_m) } else { self.height_m.max(spot.height_m) };
+        let (column, row) = (at % cells.columns, at / cells.columns);
+        let [left, top, right, bottom] = self.bounds;
+        self.bounds = [left.min(column), top.min(row), right.max(column), bottom.max(row)];
+        Some(distance as f32)
+    }
+
+    /// `None` if the lens has rays for none of its cells.
+    fn obstacle(&self) -> Option<Obstacle> {
+        let nearest = self.nearest?;
         let first = |cell: usize| (cell * CELL) as u32;
         let last = |cell: usize| (cell * CELL + CELL - 1) as u32;
-        let [u_min, v_min, u_max, v_max] = bounds;
+        let [left, top, right, bottom] = self.bounds;
         Some(Obstacle {
-            is_drop,
+            is_drop: self.is_drop,
             distance_m: nearest.distance_m(),
             bearing_deg: nearest.bearing_deg(),
-            width_m: across[1] - across[0],
-            height_m: height,
-            bounding_box: PixelBox { u_min: first(u_min), v_min: first(v_min), u_max: last(u_max), v_max: last(v_max) },
+            width_m: self.across_m[1] - self.across_m[0],
+            height_m: self.height_m,
+            bounding_box: PixelBox { u_min: first(left), v_min: first(top), u_max: last(right), v_max: last(bottom) },
         })
     }
+}
+
+fn is_obstacle(mark: u8) -> bool {
+    mark == OBSTACLE || mark == DROP
 }
 
 /// Whether two neighbouring cells are of one obstacle.

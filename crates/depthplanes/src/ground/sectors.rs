@@ -3,7 +3,6 @@
 use super::cells::Cells;
 use super::marks::FLOOR;
 use super::standing::Standing;
-use crate::sensor::Sensor;
 
 /// A range of bearings, and how far the floor is free in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,16 +26,10 @@ const SECTOR_DEG: f64 = 5.0;
 const MOST: usize = 36;
 
 /// The sectors across the picture, from left to right. `distances_m` are those of cells with an obstacle, 0 elsewhere.
-pub(super) fn find(
-    cells: &Cells,
-    distances_m: &[f32],
-    standing: &Standing,
-    sensor: &Sensor,
-    sectors: &mut Vec<Sector>,
-) {
+pub(super) fn find(cells: &Cells, distances_m: &[f32], standing: &Standing, sectors: &mut Vec<Sector>) {
     sectors.clear();
     sectors.reserve(MOST);
-    let Some([left, right]) = bearings(cells, standing, sensor) else { return };
+    let Some([left, right]) = bearings(cells, standing) else { return };
     let count = (((right - left) / SECTOR_DEG).ceil().max(1.0) as usize).min(MOST);
     let end = |at: usize| left + (right - left) * at as f64 / count as f64;
     let sector = |at| Sector { from_deg: end(at), to_deg: end(at + 1), free_m: 0.0, is_blocked: false };
@@ -50,8 +43,7 @@ pub(super) fn find(
         if blocked_m == 0.0 && cells.marks[at] != FLOOR {
             continue;
         }
-        let [u, v] = cells.middle(at);
-        let Some(ray) = sensor.ray(u, v) else { continue };
+        let Some(ray) = cells.rays[at] else { continue };
         let direction = standing.direction(ray);
         if direction[1] <= 0.0 {
             continue;
@@ -70,14 +62,13 @@ pub(super) fn find(
 }
 
 /// Bearings of the leftmost and rightmost rays along the middle row.
-fn bearings(cells: &Cells, standing: &Standing, sensor: &Sensor) -> Option<[f64; 2]> {
+fn bearings(cells: &Cells, standing: &Standing) -> Option<[f64; 2]> {
     let (columns, rows) = (cells.columns, cells.rows);
     if columns == 0 || rows == 0 {
         return None;
     }
     let bearing = |at: usize| {
-        let [u, v] = cells.middle(at);
-        let [right, ahead] = standing.direction(sensor.ray(u, v)?);
+        let [right, ahead] = standing.direction(cells.rays[at]?);
         Some(right.atan2(ahead).to_degrees().clamp(-89.0, 89.0))
     };
     let row = rows / 2 * columns;

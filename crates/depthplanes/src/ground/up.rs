@@ -94,14 +94,14 @@ fn estimate(planes: &[Plane], least_pixels: f64, usual: [f64; 3]) -> Option<Vote
         let says = |(plane, pixels): (MetricPlane, f64)| pixels * agrees(plane.plane.normal, up);
         dot(up, usual) * voters().map(says).sum::<f64>() / all
     };
-    let candidates = || {
-        let normals = voters().map(|(plane, _)| plane.plane.normal);
-        normals.filter(|&normal| dot(normal, usual) >= UPRIGHT).map(|normal| (agreement(normal), normal))
-    };
-    let better = |a: &(f64, [f64; 3]), b: &(f64, [f64; 3])| a.0.total_cmp(&b.0);
-    let (best, up) = candidates().max_by(better)?;
-    let rival = candidates().filter(|&(_, other)| angle_deg(other, up) > OTHER_DEG).max_by(better);
-    (best >= LEAST).then(|| Vote { up, agreement: best, rival: rival.map_or(0.0, |(rival, _)| rival) })
+    let mut judged = [(0.0, [0.0; 3]); VOTERS];
+    let upright = voters().map(|(plane, _)| plane.plane.normal).filter(|&normal| dot(normal, usual) >= UPRIGHT);
+    let count = judged.iter_mut().zip(upright).map(|(judged, normal)| *judged = (agreement(normal), normal)).count();
+    let judged = &judged[..count];
+    let better = |a: &&(f64, [f64; 3]), b: &&(f64, [f64; 3])| a.0.total_cmp(&b.0);
+    let &(best, up) = judged.iter().max_by(better)?;
+    let rival = judged.iter().filter(|&&(_, other)| angle_deg(other, up) > OTHER_DEG).max_by(better);
+    (best >= LEAST).then(|| Vote { up, agreement: best, rival: rival.map_or(0.0, |&(rival, _)| rival) })
 }
 
 /// How well a normal suits a direction that is up, 0 to 1: 1 for level and upright planes, falling with the square of the
