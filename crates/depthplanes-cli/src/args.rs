@@ -109,6 +109,10 @@ pub(crate) struct Floor {
     /// Height of the camera above the floor that it stands on, metres, if it is known.
     pub(crate) camera_height: Option<f64>,
     pub(crate) overlay: Option<PathBuf>,
+    /// The occupancy grid's picture.
+    pub(crate) grid: Option<PathBuf>,
+    /// Metres of a cell's side, if stated.
+    pub(crate) resolution: Option<f64>,
     pub(crate) json: bool,
     pub(crate) rows: usize,
 }
@@ -385,6 +389,8 @@ fn floor(matches: &ArgMatches) -> Floor {
         up: matches.get_one("up").copied(),
         camera_height: matches.get_one("camera-height").copied(),
         overlay: path_given(matches, "overlay"),
+        grid: path_given(matches, "grid"),
+        resolution: matches.get_one("resolution").copied(),
         json: matches.get_flag("json"),
         rows: *matches.get_one("rows").expect("it has a default"),
     }

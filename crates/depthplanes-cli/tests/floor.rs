@@ -77,6 +77,13 @@ fn wrong_use_says_what_is_accepted() {
         (&["wall.pgm", "--up", "0,1"], "accepted: 3 numbers with commas between and no blanks; 2 were given"),
         (&["wall.pgm", "--camera-height", "-1"], "`camera-height` is -1; accepted: a finite number of metres above 0"),
         (&["wall.pgm", "--overlay", "a.jpg"], "--overlay a.jpg: accepted: a name that ends in .png"),
+        (&["wall.pgm", "--grid", "a.yaml"], "--grid a.yaml: accepted: a name that ends in .png or .pgm"),
+        (&["wall.pgm", "--grid", "a.png", "--overlay", "a.png"], "a.png"),
+        (&["wall.pgm", "--grid", "wall.pgm"], "the input wall.pgm"),
+        (
+            &["wall.pgm", "--grid", "a.png", "--resolution", "2"],
+            "`resolution` is 2; accepted: metres of a cell's side, 0.01 to 1",
+        ),
         (&["wall.pgm", "wall.pgm", "--overlay", "a.png"], "--overlay names one file, but there are 2 inputs"),
     ] {
         let camera = if words.len() == 1 { &[][..] } else { &camera[..] };
@@ -104,6 +111,28 @@ fn the_picture_is_as_large_as_the_map() {
     bench.run(&["floor", "scene:boxes:size=160x120", "--overlay", "ground.png"]).ok();
     // Width and height of a PNG file's header.
     assert_eq!(bench.read("ground.png")[16..24], [0, 0, 0, 160, 0, 0, 0, 120]);
+}
+
+#[test]
+fn the_grid_is_a_map_that_ros_reads() {
+    let bench = Bench::new("floor_grid");
+    // Looks straight down at a floor 2 m below: 2 m * 64 / 60 across and 2 m * 48 / 60 along, the camera in the middle.
+    bench.write("wall.pgm", &wall());
+    let words = ["floor", "wall.pgm", "--intrinsics", "60,60,31.5,23.5", "--up", "0,0,-1", "--resolution", "0.1"];
+    bench.run(&[&words[..], &["--grid", "map.pgm"]].concat()).ok();
+    let yaml = String::from_utf8(bench.read("map.yaml")).unwrap();
+    assert_eq!(
+        yaml,
+        "image: \"map.pgm\"\nmode: trinary\nresolution: 0.1\norigin: [-0.8, -1.1, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n\
+         free_thresh: 0.196\n"
+    );
+    let map = bench.read("map.pgm");
+    let pixels = map.strip_prefix(b"P5\n16 22\n255\n").expect("16 cells ahead and back, 22 across");
+    assert_eq!(pixels, [254; 16 * 22]);
+    // A map of what is not the floor is unknown, and the same in PNG is as large.
+    bench.run(&["floor", "wall.pgm", "--intrinsics", "60,60,31.5,23.5", "--grid", "map.png"]).ok();
+    assert_eq!(bench.read("map.png")[16..24], [0, 0, 0, 1, 0, 0, 0, 1]);
+    assert!(String::from_utf8(bench.read("map.yaml")).unwrap().starts_with("image: \"map.png\""));
 }
 
 const POLYLIDAR: [&str; 7] = [

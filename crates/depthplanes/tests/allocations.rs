@@ -4,7 +4,7 @@
 
 mod naive;
 
-use depthplanes::ground::GroundFinder;
+use depthplanes::ground::{GridMapper, GroundFinder};
 use depthplanes::methods::Parameters;
 use depthplanes::noise::{EnlargementFinder, RoundingFinder, Space};
 use depthplanes::outline::Outliner;
@@ -179,10 +179,13 @@ fn later_grounds_allocate_nothing() {
         .map(|spec| spec.parse::<Spec>().unwrap().frame().unwrap())
         .into();
     let mut detector = Detector::default().sensor(frames[0].sensor);
-    let mut finder = GroundFinder::default();
+    let (mut finder, mut mapper) = (GroundFinder::default(), GridMapper::default());
     for (number, frame) in frames.iter().enumerate() {
         let found = detector.detect(frame.view()).unwrap();
-        let (calls, bytes) = allocated(|| assert!(finder.find(frame.view(), found, &frame.sensor).is_ok()));
+        let (calls, bytes) = allocated(|| {
+            let ground = finder.find(frame.view(), found, &frame.sensor).unwrap();
+            assert!(mapper.grid(frame.view(), &frame.sensor, ground).is_ok());
+        });
         assert!(number == 0 || (calls, bytes) == (0, 0), "frame {number}: {calls} calls, {bytes} bytes");
     }
 }

@@ -68,6 +68,7 @@ const SHORT: &[(&str, &[&str])] = &[
             "up",
             "camera-height",
             "overlay",
+            "grid",
             "json",
             "preset",
             "intrinsics",

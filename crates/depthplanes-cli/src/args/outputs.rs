@@ -101,6 +101,17 @@ pub(super) fn floor_flags() -> Vec<Arg> {
     let output = [
         flags::path("overlay", "FILE")
             .help("Write a picture (.png): the floor green, obstacles red, drops blue, and where the free floor ends"),
+        flags::path("grid", "FILE")
+            .help("Write the floor from above as a ROS map: a picture (.png, .pgm) and the YAML file beside it")
+            .long_help(
+                "Write the floor from above as a map that ROS' map_server reads: a picture (.png or .pgm), black where \
+                 something stands or the floor falls, white where floor is seen and grey elsewhere, and beside it the YAML \
+                 file of the same name. x is ahead of the camera, y to its left, and the origin below it",
+            ),
+        flags::number("resolution", "METRES")
+            .long("resolution")
+            .help("Side of a cell of --grid, 0.01 to 1; 0.05 without it")
+            .requires("grid"),
         flags::switch("json", "Print one JSON document; one line for each of several inputs"),
         flags::count("rows", "N").default_value("20").help("Planes in the printed table"),
     ];

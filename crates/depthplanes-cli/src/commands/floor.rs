@@ -11,7 +11,7 @@ use crate::failure::{Failure, Outcome, note};
 use crate::inputs::{self, Input};
 use crate::load;
 use crate::run::{Recipe, Runner};
-use depthplanes::ground::{GroundFinder, Up};
+use depthplanes::ground::{GridMapper, GroundFinder, RESOLUTION_M, Up};
 use depthplanes::noise::SensorNoise;
 use depthplanes_io::{ReadOptions, outputs};
 use std::io::Write;
@@ -20,11 +20,13 @@ pub(super) fn run(wanted: &Floor, out: &mut dyn Write) -> Outcome {
     let recipe = Recipe::new(wanted.method, &wanted.parameters, 1)?;
     let up = wanted.up.map_or(Ok(Up::Estimated), Up::known)?;
     let finder = GroundFinder::default().up(up).camera_height_m(wanted.camera_height)?;
+    let mapper = GridMapper::default().resolution_m(wanted.resolution.unwrap_or(RESOLUTION_M))?;
     let inputs = inputs::expand(&wanted.inputs.words, wanted.inputs.recursive)?;
     files::check(wanted, &inputs)?;
     let mut options = load::options(&wanted.reading)?;
     options.noise = load::noise_table(wanted.noise_table.as_deref())?.map(SensorNoise::Table);
-    let mut work = Work { wanted, runner: Runner::new(&recipe), finder, up, options, alone: inputs.len() == 1 };
+    let (runner, alone) = (Runner::new(&recipe), inputs.len() == 1);
+    let mut work = Work { wanted, runner, finder, mapper, up, options, alone };
     let mut failed = 0;
     for input in &inputs {
         match work.process(input, out).map_err(|failure| failure.of_input(&input.name())) {
@@ -47,6 +49,7 @@ struct Work<'a> {
     wanted: &'a Floor,
     runner: Runner<'a>,
     finder: GroundFinder,
+    mapper: GridMapper,
     up: Up,
     options: ReadOptions,
     alone: bool,
@@ -60,6 +63,9 @@ impl Work<'_> {
         let ground = self.finder.find(frame.view()?, &found.detection, &frame.sensor)?;
         if let Some(path) = &self.wanted.overlay {
             outputs::write_file(path, &outputs::ground_png(frame.view()?, &frame.sensor, &found.detection, ground)?)?;
+        }
+        if let Some(path) = &self.wanted.grid {
+            outputs::write_grid(path, self.mapper.grid(frame.view()?, &frame.sensor, ground)?)?;
         }
         frame.warnings.iter().for_each(|warning| note(&format!("{name}: {warning}")));
         if ground.floor.is_none() {

@@ -29,7 +29,8 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     write_together(&[(path, bytes)])
 }
 
-fn write_together(files: &[(&Path, &[u8])]) -> Result<(), OutputError> {
+/// Writes several files, all or none.
+pub(super) fn write_together(files: &[(&Path, &[u8])]) -> Result<(), OutputError> {
     let stage = |(path, bytes): &(&Path, &[u8])| {
         let mut staged = Staged::begin(path)?;
         staged.write(bytes)?;

@@ -56,6 +56,16 @@ pub fn grey16_png(width: usize, height: usize, values: &[u16]) -> Vec<u8> {
     encode_png(width, height, png::ColorType::Grayscale, png::BitDepth::Sixteen, &samples)
 }
 
+/// An 8-bit grey PNG file.
+pub(super) fn grey8_png(width: usize, height: usize, values: &[u8]) -> Vec<u8> {
+    encode_png(width, height, png::ColorType::Grayscale, png::BitDepth::Eight, values)
+}
+
+/// An 8-bit grey PGM file.
+pub(super) fn grey8_pgm(width: usize, height: usize, values: &[u8]) -> Vec<u8> {
+    [format!("P5\n{width} {height}\n255\n").as_bytes(), values].concat()
+}
+
 /// A PNG file of samples in PNG's own order (16-bit samples high byte first).
 fn encode_png(width: usize, height: usize, colour: png::ColorType, depth: png::BitDepth, samples: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
