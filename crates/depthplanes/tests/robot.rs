@@ -200,25 +200,3 @@ fn a_cell_of_the_grid_is_what_stands_there() {
         assert!(message.contains("metres of a cell's side, 0.01 to 1"), "{message}");
     }
 }
-
-#[test]
-fn tmp_corridor() {
-    for size in ["320x240", "640x480"] {
-        for sensor in ["kinect", "azure"] {
-            let mut tally = Tally::default();
-            for seed in SEEDS {
-                tally.count(&format!("corridor:seed={seed},sensor={sensor},size={size}").parse().unwrap());
-            }
-            println!(
-                "corridor {size} {sensor}: squares {:.2?} close {} of {}",
-                tally.mean_squares(),
-                tally.close,
-                tally.found
-            );
-            let spec: Spec = format!("corridor:seed=1,sensor={sensor},size={size}").parse().unwrap();
-            let frame = spec.frame().unwrap();
-            let found = Detector::default().sensor(frame.sensor).detect(frame.view()).unwrap().clone();
-            println!("{:?}", found.noise);
-        }
-    }
-}
