@@ -175,6 +175,29 @@ fn wrong_words_are_refused_before_anything_is_written() {
     }
 }
 
+#[test]
+fn frames_are_never_overwritten_by_what_is_made_from_them() {
+    let bench = Bench::new("track_overwrite");
+    std::fs::create_dir_all(bench.folder.join("video/depth")).unwrap();
+    let map = two_planes(1000);
+    bench.write("video/000000.pgm", &map);
+    bench.write("video/depth/000000.png", &map);
+    for words in [
+        &["--labels", "video"][..],
+        &["--overlays", "video/depth"],
+        &["--labels", "./video/../video"],
+        &["--out", "video/000000.pgm"],
+        &["--labels", "new", "--overlays", "new"],
+    ] {
+        let error = bench.run(&[&["track", "video"], words].concat()).fails(2);
+        assert!(error.contains("belongs to the source video") || error.contains("the same folder"), "{error}");
+    }
+    assert!(bench.read("video/000000.pgm") == map && bench.read("video/depth/000000.png") == map);
+    assert_eq!(bench.names(), ["video"]);
+    bench.run(&["track", "video", "--encoding", "millimetre", "--labels", "video/ids", "--out", "video/t.jsonl"]).ok();
+    assert_eq!(bench.read("video/000000.pgm"), map);
+}
+
 /// Ids of the recorded videos by the frames in which their plane has at least so many pixels.
 fn frames_of_ids(lines: &[Value], least: u64) -> BTreeMap<u64, usize> {
     let mut frames = BTreeMap::new();
@@ -190,11 +213,13 @@ fn frames_of_ids(lines: &[Value], least: u64) -> BTreeMap<u64, usize> {
 fn large_planes_of_recorded_videos_keep_one_id() {
     let bench = Bench::new("track_recorded");
     let Some(data) = data() else { return };
-    for (folder, whole, others) in [("video_7scenes", 7, 4), ("video_tsdf_fusion", 2, 12)] {
+    // Of 7-Scenes at most 8 planes are so large at once, and there are 8 ids in 40 frames. Of TSDF, where the camera turns
+    // away, walls, cupboards and the floor are 6 planes; a seventh id is that of one frame in which two of them are one.
+    for (folder, least, ids, whole) in [("video_7scenes", 8000, 8, 6), ("video_tsdf_fusion", 15_000, 7, 2)] {
         let out = bench.run(&["track", data.join(folder).to_str().unwrap(), "--out", "-"]).ok();
         let lines = lines(&out);
-        let frames = frames_of_ids(&lines, 5000);
+        let frames = frames_of_ids(&lines, least);
         let all = frames.values().filter(|&&count| count == lines.len()).count();
-        assert!(all >= whole && frames.len() - all <= others, "{folder}, {} frames: {frames:?}", lines.len());
+        assert!(frames.len() <= ids && all >= whole, "{folder}, {} frames: {frames:?}", lines.len());
     }
 }

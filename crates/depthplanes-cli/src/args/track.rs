@@ -1,7 +1,7 @@
 //! `depthplanes track`: its flags and what they mean.
 
 use super::flags::{self, Reading, path_given};
-use super::{method, one_method, outputs};
+use super::outputs;
 use clap::{Arg, ArgMatches, Command};
 use depthplanes::methods::MethodInfo;
 use std::path::PathBuf;
@@ -31,7 +31,8 @@ pub(crate) struct Track {
     pub(crate) ignore_poses: bool,
 }
 
-pub(super) fn command() -> Command {
+/// The command; `method` has the flags of the method.
+pub(super) fn command(method: Vec<Arg>) -> Command {
     let source = Arg::new("source").value_name("SOURCE").required(true).help(
         "A folder of maps, of TUM RGB-D or of 7-Scenes; - for raw frames on standard input; scene:SPEC for a synthetic camera",
     );
@@ -56,16 +57,16 @@ pub(super) fn command() -> Command {
         .args(output.map(under("Output")))
         .args(outputs::ground_flags().map(under("Ground")))
         .args(flags::reading())
-        .args(one_method())
+        .args(method)
         .args(running.map(under("Running")))
 }
 
-pub(super) fn from_matches(matches: &ArgMatches) -> Track {
+pub(super) fn from_matches(matches: &ArgMatches, method: &'static MethodInfo) -> Track {
     let count = |id| matches.get_one::<usize>(id).copied();
     Track {
         source: matches.get_one::<String>("source").cloned().expect("it is required"),
         reading: Reading::from_matches(matches),
-        method: method(matches).expect("it has a default"),
+        method,
         parameters: flags::parameters_given(matches),
         noise_table: path_given(matches, "noise-table"),
         out: path_given(matches, "out"),

@@ -3,6 +3,7 @@
 //! In: a source of frames. Out: a line of JSON for each frame, label images, pictures. Three threads: one reads and decodes,
 //! one finds and follows planes, one writes; the queues between them are short, so that the slowest sets the pace.
 
+mod folders;
 mod follow;
 mod pace;
 mod queue;
@@ -36,6 +37,7 @@ pub(super) fn run(wanted: &Track, out: &mut dyn Write) -> Outcome {
     let mut options = load::options(&wanted.reading)?;
     options.noise = load::noise_table(wanted.noise_table.as_deref())?.map(SensorNoise::Table);
     let options = SourceOptions::default().read(options);
+    folders::check(wanted)?;
     let mut source = open(&wanted.source, &options)?;
     let frames = source.frames().map(|frames| wanted.frames.map_or(frames, |most| most.min(frames)));
     let mut follower = Follower::new(wanted, &recipe)?;

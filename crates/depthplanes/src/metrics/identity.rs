@@ -12,16 +12,13 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct IdentityFrame<'a> {
     /// The true surface of each pixel, the same number in all frames; 0 = none.
     pub surfaces: &'a [u32],
-    /// For each pixel the one of the frame before that shows the same spot; [`NOT_SEEN`] if none does.
-    pub before: &'a [u32],
+    /// For each pixel the one of the frame before that shows the same spot, if one does.
+    pub before: &'a [Option<u32>],
     /// The label of each pixel, 0 = none.
     pub labels: &'a [u16],
     /// The ids of labels 1, 2, ..
     pub ids: &'a [u32],
 }
-
-/// No pixel of the frame before shows the same spot.
-pub const NOT_SEEN: u32 = u32::MAX;
 
 /// Share of the smaller of two planes that lies in the other if both are one.
 const SAME: f64 = 0.5;
@@ -35,7 +32,7 @@ const SAME: f64 = 0.5;
 /// use depthplanes::metrics::{Identity, IdentityFrame};
 /// let mut identity = Identity::default();
 /// let (surfaces, labels) = ([[7; 60], [8; 40]].concat(), [[1; 60], [2; 40]].concat());
-/// let before: Vec<u32> = (0..100).collect(); // nothing moves
+/// let before: Vec<Option<u32>> = (0..100).map(Some).collect(); // nothing moves
 /// let frame = IdentityFrame { surfaces: &surfaces, before: &before, labels: &labels, ids: &[10, 11] };
 /// identity.add(&frame)?;
 /// identity.add(&IdentityFrame { ids: &[10, 12], ..frame })?; // the second one lost its id
@@ -86,9 +83,9 @@ impl Identity {
         Ok(())
     }
 
-    fn compare(&mut self, before: &[u32], labels: &[u16], ids: &[u32]) {
+    fn compare(&mut self, before: &[Option<u32>], labels: &[u16], ids: &[u32]) {
         let (pixels, pixels_before) = (pixels_of(labels, ids.len()), pixels_of(&self.last.0, self.last.1.len()));
-        let same_spot = |&at: &u32| self.last.0.get(at as usize).copied().unwrap_or(0);
+        let same_spot = |&at: &Option<u32>| at.and_then(|at| self.last.0.get(at as usize).copied()).unwrap_or(0);
         let pairs = before.iter().map(same_spot).zip(labels.iter().copied());
         let (mut is_taken, mut was_taken) = (BTreeSet::new(), BTreeSet::new());
         for ((was, is), spots) in ranked(pairs) {

@@ -32,7 +32,7 @@ mod sequence;
 pub use contingency::{Contingency, Match, Overlap, Region};
 pub use equations::{PlaneError, adjacent, angle_errors, plane_error, plane_errors};
 pub use evops::{Evops, IOU_FULL, IOU_PART, evops};
-pub use identity::{Identity, IdentityFrame, NOT_SEEN};
+pub use identity::{Identity, IdentityFrame};
 pub use partial::{Fate, NOT_PLANAR, Partial, Surface, SurfaceCounts, UNLABELLED, partial};
 pub use partition::{Partition, partition};
 pub use segcomp::{SegComp, Split, Tolerance, segcomp};

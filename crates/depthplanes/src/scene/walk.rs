@@ -8,7 +8,6 @@ use super::sensors::SensorModel;
 use super::spec::Spec;
 use super::staged::Staged;
 use crate::error::Result;
-use crate::metrics::NOT_SEEN;
 use crate::track::CameraPose;
 
 /// Frames of a camera that moves through a scene, with the truth of each.
@@ -68,12 +67,12 @@ impl Walk {
         CameraPose::new(axes.map(|axis| eye.direction(axis)), self.place(index).position_m)
     }
 
-    /// For each pixel of a frame the pixel of an earlier one that shows the same spot of the same surface, by the truth;
-    /// [`NOT_SEEN`] if none does. `now` and `before` are the frames of those indices.
+    /// For each pixel of a frame the pixel of an earlier one that shows the same spot of the same surface, by the truth,
+    /// if one does. `now` and `before` are the frames of those indices.
     ///
     /// # Errors
     /// As [`Camera::check`].
-    pub fn same_spots(&self, now: (u64, &SceneFrame), before: (u64, &SceneFrame)) -> Result<Vec<u32>> {
+    pub fn same_spots(&self, now: (u64, &SceneFrame), before: (u64, &SceneFrame)) -> Result<Vec<Option<u32>>> {
         let (camera, earlier) = (self.camera(now.0)?, self.camera(before.0)?);
         let (eye, earlier_eye) = (self.pose(now.0)?, earlier.extrinsics());
         let (truth, then) = (&now.1.truth, &before.1.truth);
@@ -88,7 +87,7 @@ impl Walk {
             let place = is_inside.then(|| v as usize * then.width + u as usize)?;
             (truth.surfaces[at] != 0 && then.surfaces[place] == truth.surfaces[at]).then_some(place as u32)
         };
-        Ok((0..truth.surfaces.len()).map(|at| same_spot(at).unwrap_or(NOT_SEEN)).collect())
+        Ok((0..truth.surfaces.len()).map(same_spot).collect())
     }
 
     fn camera(&self, index: u64) -> Result<Camera> {
