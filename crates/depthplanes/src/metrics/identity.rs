@@ -112,11 +112,10 @@ impl Identity {
             let id = ids[usize::from(label) - 1];
             now.push((surface, id));
             // The largest plane of the surface comes first.
-            if is_seen.insert(surface) {
-                if let Some(known) = self.known.get(&surface) {
-                    self.plane_frames += 1;
-                    self.switches += u64::from(!known.contains(&id));
-                }
+            let known = self.known.get(&surface).filter(|_| is_seen.insert(surface));
+            if let Some(known) = known {
+                self.plane_frames += 1;
+                self.switches += u64::from(!known.contains(&id));
             }
         }
         for (surface, id) in now {

@@ -62,7 +62,7 @@ impl State {
             std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
         };
         let squares: f64 = (0..3).map(|i| offset[i] * dot(inverse[i], offset)).sum();
-        if !(squares <= MOVED) {
+        if squares.is_nan() || squares > MOVED {
             return *self = State::new(seen);
         }
         let gain = times(&before, &inverse);

@@ -113,10 +113,8 @@ impl Tracker {
             self.field.overlaps(found, &mut self.association.overlaps);
             self.association.egomotion(found, &self.field, &self.states)
         });
-        if motion != Motion::NONE {
-            if let Some(camera) = &sensor.intrinsics {
-                self.shift(&motion, camera);
-            }
+        if let Some(camera) = sensor.intrinsics.filter(|_| motion != Motion::NONE) {
+            self.shift(&motion, &camera);
         }
         self.states.iter_mut().flatten().for_each(|state| state.predict(&motion));
         if known.is_some() || motion != Motion::NONE {

@@ -27,7 +27,7 @@ impl CameraPose {
         for i in 0..3 {
             for j in 0..3 {
                 let (product, right) = (dot(rotation[i], rotation[j]), f64::from(u8::from(i == j)));
-                if !((product - right).abs() <= ORTHONORMAL) {
+                if product.is_nan() || (product - right).abs() > ORTHONORMAL {
                     return wrong("rotation", product, "rows of length 1 at right angles to each other");
                 }
             }
