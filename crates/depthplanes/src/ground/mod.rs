@@ -1,6 +1,6 @@
 //! The ground of a robot or a person: the floor, how the camera stands above it, and what every other plane is.
 //!
-//! In: a map, its [`Detection`], its [`Sensor`] and what is known of up. Out: a [`Ground`].
+//! In: a map, its [`Detection`](crate::Detection), its [`Sensor`](crate::Sensor) and what is known of up. Out: a [`Ground`].
 //!
 //! ```
 //! use depthplanes::ground::{GroundFinder, PlaneClass};
