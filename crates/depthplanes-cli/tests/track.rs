@@ -93,6 +93,22 @@ fn a_broken_frame_is_said_and_survived_and_so_are_other_sizes_and_times() {
 }
 
 #[test]
+fn what_fails_of_every_frame_is_said_a_few_times_and_is_in_every_line() {
+    let bench = Bench::new("track_no_camera");
+    std::fs::create_dir(bench.folder.join("video")).unwrap();
+    (0..9).for_each(|at| bench.write(&format!("video/{at}.pgm"), &two_planes(1000)));
+    let ran = bench.run(&["track", "video", "--encoding", "millimetre", "--floor", "--out", "-"]);
+    assert_eq!(ran.code, Some(2), "{ran:?}");
+    assert_eq!(ran.err.matches("--intrinsics").count(), 5, "{}", ran.err);
+    assert!(ran.err.contains("9 frames failed, and no other came from the source"), "{}", ran.err);
+    assert!(
+        lines(&ran.out).iter().all(|line| line["error"].as_str().unwrap().contains("planes in metres")),
+        "{}",
+        ran.out
+    );
+}
+
+#[test]
 fn raw_frames_come_from_a_pipe_and_an_end_in_the_middle_is_said() {
     let bench = Bench::new("track_raw");
     let words = ["track", "-", "--raw-size", "32x24", "--encoding", "millimetre", "--min-pixels", "50", "--out", "-"];
@@ -168,8 +184,10 @@ fn wrong_words_are_refused_before_anything_is_written() {
         (&["-"], "--raw-size"),
         (&[SCENE, "--method", "ngaf", "--noise-scale", "2"], "has no parameter"),
         (&[SCENE, "--camera-height", "-1", "--floor"], "camera-height"),
+        (&[SCENE, "--out", "nowhere/t.jsonl"], "nowhere"),
     ] {
-        let error = bench.run(&[&["track"], words, &["--out", "t.jsonl"]].concat()).fails(2);
+        let words = if words.contains(&"--out") { words.to_vec() } else { [words, &["--out", "t.jsonl"]].concat() };
+        let error = bench.run(&[&["track"], &words[..]].concat()).fails(2);
         assert!(error.contains(said), "{error}");
         assert!(bench.names().is_empty(), "{:?}", bench.names());
     }

@@ -98,6 +98,17 @@ fn seven_scenes_has_poses_its_camera_and_its_missing_value() {
     let frames = all(folder.open().as_mut());
     let frame = frames[0].as_ref().unwrap();
     assert_eq!((frame.pose.unwrap().translation_m(), metres(frame)), ([0.25, 0.0, 0.0], 2.0));
+    let nominal = |frame: &VideoFrame| frame.frame.warnings.iter().any(|note| note.contains("that of 7-Scenes, 585"));
+    assert!(nominal(frame), "{:?}", frame.frame.warnings);
+    folder.write("camera-intrinsics.txt", b"50 0 32\n0 50 24\n0 0 1\n");
+    let stated = all(folder.open().as_mut());
+    let stated = stated[0].as_ref().unwrap();
+    assert_eq!((stated.frame.sensor.intrinsics.unwrap().fx, nominal(stated)), (50.0, false));
+    // The same names without a pose are any folder, whose camera nobody knows.
+    let other = Folder::new("seven_without_poses");
+    other.map("a.depth.png", 2000);
+    let unknown = all(other.open().as_mut());
+    assert_eq!(unknown[0].as_ref().unwrap().frame.sensor.intrinsics, None);
     let valid = depthplanes::with_view!(frames[1].as_ref().unwrap().frame.view().unwrap(), view => view.valid_pixels());
     assert_eq!((frames[1].as_ref().unwrap().pose, valid), (None, 0));
     folder.write("frame-000000.pose.txt", b"1 0 0 0.25\n0 1 0");

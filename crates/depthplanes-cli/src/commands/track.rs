@@ -26,6 +26,8 @@ use writer::Writer;
 
 /// Frames that wait between two threads.
 const WAITING: usize = 2;
+/// Frames that fail of which is said why; the lines say it of all.
+const MOST_SAID: u64 = 5;
 /// How often the pace is said.
 const EVERY: Duration = Duration::from_secs(1);
 
@@ -86,7 +88,9 @@ fn write_all(writer: &mut Writer<'_>, done: &Queue<Done>, frames: Option<u64>, o
             Err((index, failure)) => {
                 failed += 1;
                 writer.write_failed(index, &failure.to_string(), out)?;
-                failure.report();
+                if failed <= MOST_SAID {
+                    failure.report();
+                }
             }
         }
         if said.elapsed() >= EVERY {
@@ -103,6 +107,7 @@ fn write_all(writer: &mut Writer<'_>, done: &Queue<Done>, frames: Option<u64>, o
     match (failed, pace.frames) {
         (0, 0) => Err(Failure::request("no frame came from the source")),
         (0, _) => Ok(()),
+        (failed, 0) => Err(Failure::request(format!("{failed} frames failed, and no other came from the source"))),
         (failed, _) => Err(Failure::request(format!("{failed} frames failed; the others are done"))),
     }
 }

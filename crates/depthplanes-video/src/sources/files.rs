@@ -30,11 +30,18 @@ pub(super) struct Files {
     entries: Vec<Entry>,
     next: usize,
     options: ReadOptions,
+    /// What a person should know of every frame beside its own warnings.
+    note: Option<String>,
 }
 
 impl Files {
     pub(super) fn new(entries: Vec<Entry>, options: ReadOptions) -> Self {
-        Files { entries, next: 0, options }
+        Files { entries, next: 0, options, note: None }
+    }
+
+    /// With a note on every frame.
+    pub(super) fn note(self, note: Option<String>) -> Self {
+        Files { note, ..self }
     }
 
     fn read(&self, index: usize) -> Result<VideoFrame> {
@@ -45,7 +52,8 @@ impl Files {
             PoseOf::File(path) => Some(crate::pose_text::matrix(&text(path)?, path)?),
         };
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let frame = read(path, &self.options)?;
+        let mut frame = read(path, &self.options)?;
+        frame.warnings.extend(self.note.clone());
         Ok(VideoFrame { index: index as u64, name, time_s: *time_s, pose, up: None, frame })
     }
 }

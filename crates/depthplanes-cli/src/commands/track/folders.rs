@@ -2,6 +2,7 @@
 
 use crate::args::Track;
 use crate::failure::{Failure, Outcome};
+use depthplanes_io::outputs;
 use std::path::{Path, PathBuf};
 
 /// Refuses folders of results that are the source, lie in it, or are the same, and a file of lines that is one of the source's.
@@ -9,6 +10,9 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// What is wrong, and what to do.
 pub(super) fn check(wanted: &Track) -> Outcome {
+    if let Some(path) = wanted.out.as_deref().filter(|path| path.as_os_str() != "-") {
+        outputs::check_folder(path)?;
+    }
     let folders = [("--labels", &wanted.labels), ("--overlays", &wanted.overlays), ("--out", &wanted.out)];
     let given: Vec<(&str, PathBuf)> =
         folders.into_iter().filter_map(|(flag, path)| Some((flag, existing(path.as_deref()?)?))).collect();
