@@ -31,7 +31,7 @@ const SAME: f64 = 0.5;
 /// ```
 /// use depthplanes::metrics::{Identity, IdentityFrame};
 /// let mut identity = Identity::default();
-/// let (surfaces, labels) = ([[7; 60], [8; 40]].concat(), [[1; 60], [2; 40]].concat());
+/// let (surfaces, labels) = ([vec![7; 60], vec![8; 40]].concat(), [vec![1; 60], vec![2; 40]].concat());
 /// let before: Vec<Option<u32>> = (0..100).map(Some).collect(); // nothing moves
 /// let frame = IdentityFrame { surfaces: &surfaces, before: &before, labels: &labels, ids: &[10, 11] };
 /// identity.add(&frame)?;

@@ -4,12 +4,12 @@
 //! and filtered parameters, also while it is hidden for a few frames.
 //!
 //! ```
-//! use depthplanes::{Detector, scene::Spec, track::Tracker};
-//! let spec: Spec = "planes3:size=320x240".parse()?;
+//! use depthplanes::{Detector, scene::Walk, track::Tracker};
+//! let walk = Walk::new("planes3:size=320x240".parse()?, 1.0); // a camera that moves
 //! let (mut detector, mut tracker) = (Detector::default(), Tracker::default());
 //! let mut ids = Vec::new();
-//! for seed in 1..4 {
-//!     let frame = Spec { seed, ..spec }.frame()?; // the same planes, other noise
+//! for index in 0..3 {
+//!     let frame = walk.frame(index)?;
 //!     detector = detector.sensor(frame.sensor);
 //!     let tracks = tracker.track(detector.detect(frame.view())?, &frame.sensor, None)?;
 //!     ids.push(tracks.ids.clone());
