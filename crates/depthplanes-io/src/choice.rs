@@ -51,13 +51,19 @@ pub(crate) fn choose(
             "int16" if disparity => (encoding::by_name("opencv")?, "OpenCV's matchers write signed 16 bits".into()),
             _ => likely(&image.pixels, image.width, format, disparity),
         };
-        let is_doubtful = disparity && !has_scale && ["kitti", "opencv"].contains(&encoding.name);
-        let note = format!(
-            "disparity of 16 bits is taken to be in {} (`{}`), since {why}; state --encoding or --scale if it is not, \
-             --encoding millimetre if it is depth",
-            encoding.unit, encoding.name
-        );
-        return Ok(Choice { encoding, why, note: is_doubtful.then_some(note) });
+        let note = match (encoding.name, has_scale) {
+            ("kitti" | "opencv", false) if disparity => Some(format!(
+                "disparity of 16 bits is taken to be in {} (`{}`), since {why}; state --encoding or --scale if it is not, \
+                 --encoding millimetre if it is depth",
+                encoding.unit, encoding.name
+            )),
+            // The scale is known; that some pixels are left out is said all the same.
+            ("opencv", true) if disparity && image.sample != "int16" => {
+                Some(format!("read as `opencv`, since {why}: those pixels are missing"))
+            }
+            _ => None,
+        };
+        return Ok(Choice { encoding, why, note });
     };
     let of_preset = encoding::by_name(preset.encoding)?;
     if suits(of_preset, image, format) {

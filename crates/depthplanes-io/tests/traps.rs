@@ -852,7 +852,8 @@ fn a_scale_that_is_stated_is_not_asked_for() {
         let options = ReadOptions { disparity: true, stereo: Some(rig), scale: Some(16.0 * times), ..camera() };
         let frame = read(&bytes, &options);
         check("stated", &frame, &ROOM, CLOSE);
-        assert_eq!(notes(&frame), "", "{times}");
+        let left_out = "read as `opencv`, since 65520 is the -16 of OpenCV's matchers: those pixels are missing";
+        assert_eq!(notes(&frame), if times < 16.0 { left_out } else { "" }, "{times}");
         let guessed = ReadOptions { scale: None, ..options };
         noted("guessed", &read(&bytes, &guessed), &["state --encoding or --scale"]);
     }
