@@ -57,8 +57,8 @@ impl Input {
 /// Bytes of the longest name that file systems take.
 const LONGEST_NAME: usize = 255;
 
-/// A stem with which the names of all outputs can be had: of a longer one the beginning, and a checksum of all of it, so that names
-/// that begin alike stay apart.
+/// A stem that leaves room for the names of all outputs: of a longer one the beginning and a checksum of all of it, so that
+/// names that begin alike stay apart.
 fn shortened(stem: String) -> String {
     let most = LONGEST_NAME - 1 - OUTPUTS.iter().map(|output| output.file.len()).max().unwrap_or(0);
     if stem.len() <= most {

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
-use support::{Bench, data, two_planes};
+use support::{Bench, Ran, data, two_planes};
 
 fn lines(text: &str) -> Vec<Value> {
     text.lines().map(|line| serde_json::from_str(line).unwrap_or_else(|error| panic!("{error}: {line}"))).collect()
@@ -108,28 +108,26 @@ fn what_fails_of_every_frame_is_said_a_few_times_and_is_in_every_line() {
     );
 }
 
+/// How a run ends that is given these bytes on standard input.
+fn fed(bench: &Bench, words: &[&str], bytes: &[u8]) -> Ran {
+    let mut command = bench.command();
+    command.args(words).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let mut pipe = child.stdin.take().unwrap();
+    pipe.write_all(bytes).unwrap();
+    drop(pipe);
+    Ran::from(child.wait_with_output().unwrap())
+}
+
 #[test]
 fn raw_frames_come_from_a_pipe_and_an_end_in_the_middle_is_said() {
     let bench = Bench::new("track_raw");
     let words = ["track", "-", "--raw-size", "32x24", "--encoding", "millimetre", "--min-pixels", "50", "--out", "-"];
-    let mut child = bench
-        .command()
-        .args(words)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
     let frame: Vec<u8> =
         (0..32 * 24).flat_map(|at| (if at % 32 < 16 { 1000u16 } else { 1500 }).to_le_bytes()).collect();
-    let mut pipe = child.stdin.take().unwrap();
-    (0..3).for_each(|_| pipe.write_all(&frame).unwrap());
-    pipe.write_all(&frame[..500]).unwrap();
-    drop(pipe);
-    let ran = child.wait_with_output().unwrap();
-    let (out, err) = (String::from_utf8(ran.stdout).unwrap(), String::from_utf8(ran.stderr).unwrap());
-    assert_eq!(lines(&out).iter().take(3).map(ids).collect::<Vec<_>>(), vec![vec![1, 2]; 3], "{err}");
-    assert!(err.contains("500 of 1536 bytes") && ran.status.code() == Some(2), "{err}");
+    let ran = fed(&bench, &words, &[&frame[..], &frame, &frame, &frame[..500]].concat());
+    assert_eq!(lines(&ran.out).iter().take(3).map(ids).collect::<Vec<_>>(), vec![vec![1, 2]; 3], "{}", ran.err);
+    assert!(ran.err.contains("500 of 1536 bytes") && ran.code == Some(2), "{}", ran.err);
 }
 
 #[test]
@@ -155,25 +153,12 @@ fn what_ends_the_program_leaves_whole_lines() {
 fn live_drops_frames_rather_than_falling_behind() {
     let bench = Bench::new("track_live");
     let words = ["track", "-", "--raw-size", "32x24", "--encoding", "millimetre", "--live", "--out", "-"];
-    let mut child = bench
-        .command()
-        .args(words)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut pipe = child.stdin.take().unwrap();
-    // A reader that does not read: nothing may pile up before it.
-    pipe.write_all(&vec![4u8; 32 * 24 * 2 * 3000]).unwrap();
-    drop(pipe);
-    let ran = child.wait_with_output().unwrap();
-    let (out, err) = (String::from_utf8(ran.stdout).unwrap(), String::from_utf8(ran.stderr).unwrap());
-    let lines = lines(&out);
+    let ran = fed(&bench, &words, &vec![4u8; 32 * 24 * 2 * 3000]);
+    let lines = lines(&ran.out);
     let dropped = lines.last().unwrap()["dropped"].as_u64().unwrap();
-    assert_eq!(lines.len() as u64 + dropped, 3000, "{err}");
+    assert_eq!(lines.len() as u64 + dropped, 3000, "{}", ran.err);
     assert_eq!(lines.last().unwrap()["index"], 2999, "the newest frame is there");
-    assert_eq!(dropped > 0, err.contains("frames were dropped"), "{err}");
+    assert_eq!(dropped > 0, ran.err.contains("frames were dropped"), "{}", ran.err);
 }
 
 #[test]

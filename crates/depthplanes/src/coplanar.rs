@@ -19,6 +19,7 @@ use crate::detection::{MetricPlane, Part, Plane};
 use crate::error::{Error, Result};
 use crate::limits::MAX_PLANES;
 use crate::util::memory::reserve_to;
+use crate::util::vec3::{cross, dot};
 
 /// How far two planes may be from one plane and still be joined.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,13 +85,9 @@ impl Limits {
 
     /// Compares the sine, which tells small angles apart where the cosine is 1 to the last digit.
     fn is_parallel(&self, a: [f64; 3], b: [f64; 3]) -> bool {
-        let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-        dot(a, b) >= 0.0 && dot(cross, cross) <= self.sine * self.sine
+        let across = cross(a, b);
+        dot(a, b) >= 0.0 && dot(across, across) <= self.sine * self.sine
     }
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Finds the planes that are one; reuses its memory from map to map. The time grows with the number of planes times

@@ -1,8 +1,9 @@
 //! TIFF, one page of the file: integers or floats, one channel (or equal ones).
 //!
 //! In: strips or tiles, uncompressed, PackBits, LZW or deflate; without a page stated, the first of the largest pages that
-//! are no thumbnails, and no colour pictures where there are others. Out: `u8`, `u16` or `f32` values by the rules of `samples`. Unsigned integers of which 0 is white are
-//! inverted as the standard says; floats are taken as they are, since they have no largest value to be subtracted from.
+//! are no thumbnails, and no colour pictures where there are others. Out: `u8`, `u16` or `f32` values by the rules of
+//! `samples`. Unsigned integers of which 0 is white are inverted as the standard says; floats are taken as they are, since
+//! they have no largest value to be subtracted from.
 
 use std::borrow::Cow;
 use std::io::Cursor;

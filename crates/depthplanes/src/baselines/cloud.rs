@@ -4,8 +4,9 @@
 //! [`Affine::rays`].
 
 use super::affine::{Affine, Around};
-use crate::methods::rays::{Rays, Vec3};
+use crate::methods::rays::Rays;
 use crate::sensor::Sensor;
+use crate::util::vec3::Vec3;
 
 /// Points with their normals.
 #[derive(Debug)]

@@ -14,8 +14,9 @@ use crate::limits::MAX_PLANES;
 use crate::methods::extraction::{MIN_PIXELS, STAGES};
 use crate::methods::method::Job;
 use crate::methods::parameter::{Param, ParamKind};
-use crate::methods::rays::{Plane3, Vec3, dot, sub, unit};
+use crate::methods::rays::Plane3;
 use crate::util::random::Random;
+use crate::util::vec3::{Vec3, dot, sub, unit};
 use std::f64::consts::{PI, TAU};
 
 /// Cells along the distance; planes further off are not seen.

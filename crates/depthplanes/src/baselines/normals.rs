@@ -12,7 +12,8 @@ use crate::limits::MAX_PLANES;
 use crate::methods::extraction::{MIN_PIXELS, STAGES};
 use crate::methods::method::Job;
 use crate::methods::parameter::{Param, ParamKind};
-use crate::methods::rays::{Plane3, Rays, Vec3, cross, dot, sub, unit};
+use crate::methods::rays::{Plane3, Rays};
+use crate::util::vec3::{Vec3, cross, dot, sub, unit};
 
 pub(super) struct Normals {
     min_pixels: usize,

@@ -9,8 +9,9 @@ use super::affine::Affine;
 use super::cloud::Cloud;
 use super::work::Work;
 use crate::methods::parameter::{Param, ParamKind};
-use crate::methods::rays::{Plane3, Vec3, dot};
+use crate::methods::rays::Plane3;
 use crate::statistics::least_squares::Moments;
+use crate::util::vec3::{Vec3, dot};
 
 /// How often a plane is fitted to its piece; the piece is then sought anew.
 const FITS: usize = 3;

@@ -3,12 +3,13 @@
 //! In: the planes of a detection and the direction that is up. Out: the lowest level surface that is not small, in all its
 //! pieces, with the camera's height, tilt and roll and their standard deviations from the plane's covariance.
 
-use super::space::{angle_deg, dot, height_m, height_sd_m, unit};
+use super::space::{angle_deg, height_m, height_sd_m};
 use super::up::Vote;
 use crate::camera::{HessianNormalForm, Intrinsics};
 use crate::detection::{MetricPlane, Plane};
 use crate::limits::MAX_PLANES;
 use crate::util::memory::reserve_to;
+use crate::util::vec3::{dot, unit};
 
 /// The floor, and the camera above it.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,8 +3,8 @@
 //! In: a map and its ground. Out: square cells on the floor. Free is where floor is seen, occupied where an obstacle or a
 //! drop is, and unknown all else: what lies behind things, and the floor that is too near for the camera to see.
 //!
-//! Floor that is seen over a low thing is free as well: a planner finds the way around. Not for a camera on the move by
-//! itself: it is what one frame shows; mappers put many together.
+//! Floor that is seen over a low thing is free as well: a planner finds the way around. A grid is what one frame shows;
+//! mappers put many together.
 
 use super::cells::{CELL, Cells};
 use super::finder::Ground;

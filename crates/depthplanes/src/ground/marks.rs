@@ -7,13 +7,14 @@
 
 use super::class::ClassifiedPlane;
 use super::floor::Floor;
-use super::space::{dot, height_variance};
+use super::space::height_variance;
 use crate::camera::ValueKind;
 use crate::detection::Detection;
 use crate::map::{AnyView, DepthView, Pixel, with_view};
 use crate::noise::{NoiseModel, SensorNoise};
 use crate::sensor::Sensor;
 use crate::util::simd::vectorised;
+use crate::util::vec3::dot;
 
 /// A pixel that has no value, or lies on a ray that the lens does not have.
 pub const UNKNOWN: u8 = 0;

@@ -2,17 +2,7 @@
 
 use crate::camera::HessianNormalForm;
 use crate::detection::MetricPlane;
-
-/// Product of two vectors.
-pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// The vector at length 1; `None` of one without a direction.
-pub(super) fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
-    let length = dot(a, a).sqrt();
-    (length > 0.0 && length.is_finite()).then(|| a.map(|x| x / length))
-}
+use crate::util::vec3::{dot, quadratic_form};
 
 /// Angle between two unit vectors, degrees, 0 to 180.
 pub(super) fn angle_deg(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -26,9 +16,7 @@ pub(super) fn height_m(floor: &HessianNormalForm, point_m: [f64; 3]) -> f64 {
 
 /// Variance of the height of a point above a plane, by the plane's covariance alone, square metres.
 pub(super) fn height_variance(covariance: &[[f64; 4]; 4], [x, y, z]: [f64; 3]) -> f64 {
-    let point = [x, y, z, 1.0];
-    let row = |i: usize| (0..4).map(|j| point[i] * covariance[i][j] * point[j]).sum::<f64>();
-    (0..4).map(row).sum::<f64>().max(0.0)
+    quadratic_form(covariance, [x, y, z, 1.0]).max(0.0)
 }
 
 /// Standard deviation of the height of a plane's middle above another plane, by the covariance of both, metres.

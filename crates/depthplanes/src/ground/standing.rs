@@ -1,8 +1,9 @@
 //! Where points are as seen from the camera's foot on the floor.
 
 use super::floor::Floor;
-use super::space::{dot, height_m};
+use super::space::height_m;
 use crate::camera::HessianNormalForm;
+use crate::util::vec3::dot;
 
 /// Axes on the floor under the camera.
 #[derive(Clone, Copy, Debug)]

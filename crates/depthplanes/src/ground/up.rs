@@ -8,10 +8,11 @@
 //! Not for a camera that looks straight down or up, or lies on its side: there a wall and a floor look alike, and up has to
 //! be stated.
 
-use super::space::{angle_deg, dot, unit};
+use super::space::angle_deg;
 use crate::camera::Intrinsics;
 use crate::detection::{MetricPlane, Plane};
 use crate::error::{Error, Result};
+use crate::util::vec3::{dot, unit};
 
 /// What is known of the direction that is up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

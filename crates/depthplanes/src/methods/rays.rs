@@ -5,27 +5,7 @@
 
 use crate::camera::{Intrinsics, ValueKind};
 use crate::sensor::Sensor;
-
-/// A point or a direction.
-pub(crate) type Vec3 = [f64; 3];
-
-pub(crate) fn dot(a: Vec3, b: Vec3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(crate) fn sub(a: Vec3, b: Vec3) -> Vec3 {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(crate) fn cross(a: Vec3, b: Vec3) -> Vec3 {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-/// The vector at length 1; none if it has no direction.
-pub(crate) fn unit(a: Vec3) -> Option<Vec3> {
-    let length = dot(a, a).sqrt();
-    (length > 0.0 && length.is_finite()).then(|| a.map(|x| x / length))
-}
+use crate::util::vec3::{Vec3, cross, dot, sub, unit};
 
 /// A plane in space, `normal . point = distance`.
 #[derive(Clone, Copy, Debug)]

@@ -7,6 +7,7 @@
 use super::corner::{Corner, point};
 use crate::camera::HessianNormalForm;
 use crate::sensor::Sensor;
+use crate::util::vec3::cross;
 
 /// A rectangle in N dimensions: pixels on the picture, metres in camera coordinates on the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,10 +140,6 @@ impl Placed {
 
 fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
     (0..N).map(|i| a[i] * b[i]).sum()
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// The vector or its opposite, so that its first component that is not 0 is positive.

@@ -13,7 +13,7 @@ use crate::track::CameraPose;
 /// Frames of a camera that moves through a scene, with the truth of each.
 ///
 /// The same surfaces keep their numbers ([`super::TruthPlane::surface`]), so that a plane can be followed by the truth.
-/// After [`Walk::LOOP`] frames the camera is where it began. The white part of the noise and what edges make of depth differ
+/// At speed 1 the camera is where it began after [`Walk::LOOP`] frames. The white part of the noise and what edges make of depth differ
 /// from frame to frame; the smooth part is that of the camera, and stays.
 ///
 /// ```
@@ -42,7 +42,7 @@ impl Walk {
     /// Frames of a loop at speed 1: ten seconds at 30 frames a second, up to 0.3 m and 15 degrees a second.
     pub const LOOP: u64 = 300;
 
-    /// A walk through a scene. The speed is in loops of [`Walk::LOOP`] frames: 1 is a slow hand, 0 stands still.
+    /// A walk through a scene. The speed is in loops per [`Walk::LOOP`] frames: 1 is a slow hand, 0 stands still.
     pub fn new(spec: Spec, speed: f64) -> Self {
         let staged = (spec.scene.build)(spec.seed);
         Walk { staged, sensor: spec.sensor, seed: spec.seed, size: [spec.width, spec.height], speed }
@@ -97,7 +97,7 @@ impl Walk {
 
     /// Each coordinate swings once or a few times a loop, so that the path closes and does not retrace itself.
     fn place(&self, index: u64) -> Pose {
-        let degrees = 360.0 * self.speed * (index as f64 / Self::LOOP as f64).fract();
+        let degrees = 360.0 * (self.speed * index as f64 / Self::LOOP as f64).fract();
         let sine = |times: f64| sin_cos_deg(times * degrees).0;
         let Pose { position_m: [x, y, z], yaw_deg, pitch_deg, roll_deg } = self.staged.pose;
         let [right, ahead, up] = SWINGS_M;

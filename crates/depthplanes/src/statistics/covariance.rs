@@ -6,6 +6,7 @@
 
 use super::least_squares::AffineFit;
 use crate::noise::{NoiseModel, Patch};
+use crate::util::vec3::inverse;
 
 /// What the smooth part is made of: lengths over which it is correlated (the integral of the correlation), pixels,
 /// and variances in units of that of the first. Patches: the lattice of 32 pixels that gives synthetic frames the
@@ -91,13 +92,9 @@ impl Known {
 
 /// trace(A B^-1) / 3 of two covariances; `None` if B has no inverse.
 fn share_of(a: &Covariance, b: &Covariance) -> Option<f64> {
-    // The columns of the inverse times the determinant are cross products of the rows.
-    let cross =
-        |p: [f64; 3], q: [f64; 3]| [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
-    let columns = [cross(b[1], b[2]), cross(b[2], b[0]), cross(b[0], b[1])];
-    let dot = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-    let share = (0..3).map(|i| dot(a[i], columns[i])).sum::<f64>() / (3.0 * dot(b[0], columns[0]));
-    share.is_finite().then(|| share.clamp(0.0, 1.0))
+    let inverse = inverse(b)?;
+    let trace: f64 = (0..3).map(|i| (0..3).map(|j| a[i][j] * inverse[j][i]).sum::<f64>()).sum();
+    Some((trace / 3.0).clamp(0.0, 1.0))
 }
 
 #[cfg(test)]

@@ -6,10 +6,11 @@
 use super::egomotion::{self, Pair};
 use super::field::{Field, Overlap, STEP};
 use super::filter::State;
-use super::pose::{Motion, dot};
+use super::pose::Motion;
 use super::tracked::{TrackState, TrackedPlane};
 use crate::camera::HessianNormalForm;
 use crate::detection::{Detection, MetricPlane};
+use crate::util::vec3::{dot, quadratic_form};
 
 /// Least intersection over union of a track and its plane: below it they share no more than a border or a corner.
 const LEAST_IOU: f64 = 0.1;
@@ -26,7 +27,7 @@ const ANGLE_SD: f64 = 0.035;
 const OFFSET_SD: f64 = 0.01;
 /// Squared deviations, of 3 degrees of freedom, up to which two planes may be one: one of 100 is not by chance.
 const ALIKE: f64 = 11.3;
-/// The same before the motion of the camera is known, in radians: 15 degrees.
+/// Radians up to which two planes may be one before the motion of the camera is known: 15 degrees.
 const MOST_TURN: f64 = 0.26;
 /// Median of the squared deviations of 3 degrees of freedom up to which the camera is at rest; by chance it is 2.4.
 const AT_REST: f64 = 3.0;
@@ -41,8 +42,6 @@ pub(super) struct Association {
     pub(super) subsumed_by: Vec<Option<u32>>,
     /// The id of the plane that each label was part of before, label 1 first.
     pub(super) split_from: Vec<Option<u32>>,
-    /// Former numbers of the tracks.
-    pub(super) numbers: Vec<Option<usize>>,
     /// The track of each label, label 1 first.
     owners: Vec<Option<usize>>,
     /// Intersections over union of the overlaps, the largest first.
@@ -142,9 +141,7 @@ impl Association {
             }
         }
     }
-}
 
-impl Association {
     /// Where several tracks have become one plane, the oldest goes on: it takes the label of a younger one if it lies
     /// mostly in that plane and makes up a good part of it.
     fn prefer_older(&mut self, found: &Detection, field: &Field, agree: impl Fn(&Overlap) -> bool) {
@@ -168,9 +165,8 @@ fn angle(a: &HessianNormalForm, b: &HessianNormalForm) -> f64 {
 
 /// Variance of a plane's normal, and of its height at a point.
 fn variances(covariance: &[[f64; 4]; 4], [x, y, z]: [f64; 3]) -> [f64; 2] {
-    let point = [x, y, z, 1.0];
-    let height = (0..4).map(|i| (0..4).map(|j| point[i] * covariance[i][j] * point[j]).sum::<f64>()).sum::<f64>();
-    [(0..3).map(|i| covariance[i][i]).sum::<f64>() / 2.0, height.max(0.0)]
+    let height = quadratic_form(covariance, [x, y, z, 1.0]).max(0.0);
+    [(0..3).map(|i| covariance[i][i]).sum::<f64>() / 2.0, height]
 }
 
 /// The least that two planes are off each other: rounding, and what is smaller than any sensor's error.

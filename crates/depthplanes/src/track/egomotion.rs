@@ -4,8 +4,9 @@
 //! turn and move between frames by [`TURN_SD`] and [`SHIFT_SD_M`]. Two planes that are not parallel show the turn, three
 //! the whole motion; what the planes do not show stays at rest.
 
-use super::pose::{Motion, cross, dot};
+use super::pose::Motion;
 use crate::camera::HessianNormalForm;
+use crate::util::vec3::{cross, dot};
 
 /// Standard deviation of the turn between two frames about each axis, radians: 90 degrees a second at 30 frames.
 const TURN_SD: f64 = 0.05;

@@ -4,9 +4,10 @@
 //! 1 / [`MEMORY`]. Measurement: the plane that was found, with the white share of its covariance. The smooth part repeats
 //! from frame to frame, does not average out, and stays in the covariance that is reported.
 
-use super::pose::{Motion, cross, dot};
+use super::pose::Motion;
 use crate::camera::HessianNormalForm;
 use crate::detection::MetricPlane;
+use crate::util::vec3::{cross, dot, inverse};
 
 /// Share of the information that is kept from frame to frame: at rest the last ten frames count.
 const MEMORY: f64 = 0.9;
@@ -127,14 +128,6 @@ impl Axes {
         let length = dot(normal, normal).sqrt();
         HessianNormalForm { normal: normal.map(|x| x / length), distance: plane.distance + distance }
     }
-}
-
-/// The inverse of a covariance; `None` if it has none.
-fn inverse(of: &[[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
-    let columns = [cross(of[1], of[2]), cross(of[2], of[0]), cross(of[0], of[1])];
-    let determinant = dot(of[0], columns[0]);
-    let inverse: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i] / determinant));
-    inverse.as_flattened().iter().all(|entry| entry.is_finite()).then_some(inverse)
 }
 
 #[cfg(test)]

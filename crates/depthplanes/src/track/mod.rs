@@ -56,6 +56,8 @@ pub struct Tracker {
     pose: Option<CameraPose>,
     /// Filters of the tracks' planes, in their order.
     states: Vec<Option<State>>,
+    /// Places of the tracks in the frame before; none of new ones.
+    former: Vec<Option<usize>>,
     field: Field,
     association: Association,
     tracks: Tracks,
@@ -69,6 +71,7 @@ impl Default for Tracker {
             size: [0; 2],
             pose: None,
             states: Vec::new(),
+            former: Vec::new(),
             field: Field::default(),
             association: Association::default(),
             tracks: Tracks::default(),
@@ -103,7 +106,15 @@ impl Tracker {
         self.pose = pose.copied();
         self.predict(found, sensor, known);
         self.association.assign(found, &self.field, &self.states, &self.tracks.planes);
-        self.update(found);
+        self.count_frames();
+        self.name(found);
+        self.field.renew(
+            found,
+            self.tracks.planes.len(),
+            |track| self.tracks.planes[track].label,
+            |track| self.former[track],
+        );
+        self.filter(found);
         Ok(&self.tracks)
     }
 
@@ -130,9 +141,9 @@ impl Tracker {
         }
     }
 
-    /// Brings the tracks to this frame, by what the association says of them.
-    fn update(&mut self, found: &Detection) {
-        let Association { labels, subsumed_by, split_from, numbers: old, .. } = &mut self.association;
+    /// What the association says of each track, and for how long.
+    fn count_frames(&mut self) {
+        let Association { labels, subsumed_by, .. } = &self.association;
         for (track, plane) in self.tracks.planes.iter_mut().enumerate() {
             plane.age = plane.age.saturating_add(1);
             plane.label = labels[track];
@@ -146,7 +157,22 @@ impl Tracker {
             plane.seen = plane.seen.saturating_add(u32::from(is_seen));
             plane.unseen = if is_seen { 0 } else { plane.unseen.saturating_add(1) };
         }
-        let tracks = &mut self.tracks;
+    }
+
+    /// Drops the tracks that were not seen for long, and makes new ones of the planes that have none.
+    fn name(&mut self, found: &Detection) {
+        let (tracks, former) = (&mut self.tracks, &mut self.former);
+        former.clear();
+        for track in 0..tracks.planes.len() {
+            let TrackedPlane { seen, unseen, .. } = tracks.planes[track];
+            if unseen <= self.kept_frames.min(KEPT_PER_SEEN.saturating_mul(seen)) {
+                tracks.planes[former.len()] = tracks.planes[track];
+                self.states[former.len()] = self.states[track];
+                former.push(Some(track));
+            }
+        }
+        tracks.planes.truncate(former.len());
+        self.states.truncate(former.len());
         tracks.ids.clear();
         tracks.ids.resize(found.planes.len(), 0);
         for plane in &tracks.planes {
@@ -154,27 +180,18 @@ impl Tracker {
                 tracks.ids[usize::from(label) - 1] = plane.id;
             }
         }
-        // Tracks that are over go; the field numbers them as they were.
-        old.clear();
-        for track in 0..tracks.planes.len() {
-            let TrackedPlane { seen, unseen, .. } = tracks.planes[track];
-            if unseen <= self.kept_frames.min(KEPT_PER_SEEN.saturating_mul(seen)) {
-                tracks.planes[old.len()] = tracks.planes[track];
-                self.states[old.len()] = self.states[track];
-                old.push(Some(track));
-            }
-        }
-        tracks.planes.truncate(old.len());
-        self.states.truncate(old.len());
         for (at, id) in tracks.ids.iter_mut().enumerate().filter(|(_, id)| **id == 0) {
             self.last_id += 1;
             *id = self.last_id;
-            tracks.planes.push(TrackedPlane::new(*id, found.planes[at].label, split_from[at]));
+            tracks.planes.push(TrackedPlane::new(*id, found.planes[at].label, self.association.split_from[at]));
             self.states.push(None);
-            old.push(None);
+            former.push(None);
         }
-        self.field.renew(found, tracks.planes.len(), |track| tracks.planes[track].label, |track| old[track]);
-        for (plane, state) in tracks.planes.iter_mut().zip(&mut self.states) {
+    }
+
+    /// Brings the planes' parameters to what was found of them.
+    fn filter(&mut self, found: &Detection) {
+        for (plane, state) in self.tracks.planes.iter_mut().zip(&mut self.states) {
             if let Some(label) = plane.label {
                 match (&mut *state, &found.planes[usize::from(label) - 1].metric) {
                     (Some(state), Some(metric)) => state.update(metric),

@@ -2,6 +2,7 @@
 
 use crate::camera::HessianNormalForm;
 use crate::error::{Error, Result};
+use crate::util::vec3::{cross, dot, unit};
 
 /// Where a camera is: a point X of the camera is `rotation X + translation` in the world.
 ///
@@ -39,9 +40,9 @@ impl CameraPose {
         if dot(cross(first, second), third) < 0.0 {
             return wrong("rotation", -1.0, "a rotation, whose determinant is 1; this one mirrors");
         }
-        let first = normalised(first);
+        let first = unit(first).expect("its length was checked");
         let along = dot(first, second);
-        let second = normalised([0, 1, 2].map(|k| second[k] - along * first[k]));
+        let second = unit([0, 1, 2].map(|k| second[k] - along * first[k])).expect("it is across the first");
         Ok(CameraPose { rotation: [first, second, cross(first, second)], translation_m })
     }
 
@@ -108,7 +109,7 @@ impl Motion {
         HessianNormalForm { normal, distance: plane.distance - dot(normal, self.translation_m) }
     }
 
-    /// The covariance of (nx, ny, nz, distance) of a plane after the motion; `normal` is the one after it.
+    /// The covariance of (nx, ny, nz, distance) of a plane after the motion.
     pub(super) fn of_covariance(&self, covariance: &[[f64; 4]; 4]) -> [[f64; 4]; 4] {
         // (n', d') = A (n, d) with A = [R, 0; -t R, 1].
         let mut all = [[0.0; 4]; 4];
@@ -123,19 +124,6 @@ impl Motion {
             std::array::from_fn(|i| std::array::from_fn(|l| (0..4).map(|k| all[i][k] * covariance[k][l]).sum()));
         std::array::from_fn(|i| std::array::from_fn(|j| (0..4).map(|l| times[i][l] * all[j][l]).sum()))
     }
-}
-
-pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn normalised(a: [f64; 3]) -> [f64; 3] {
-    let length = dot(a, a).sqrt();
-    a.map(|x| x / length)
 }
 
 #[cfg(test)]

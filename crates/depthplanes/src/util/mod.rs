@@ -8,3 +8,4 @@ pub(crate) mod runs;
 pub(crate) mod simd;
 pub(crate) mod switches;
 pub(crate) mod union_find;
+pub(crate) mod vec3;

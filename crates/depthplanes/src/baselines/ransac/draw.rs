@@ -7,8 +7,9 @@
 use super::score::{Candidate, Free};
 use crate::baselines::affine::Affine;
 use crate::baselines::pieces::Pieces;
-use crate::methods::rays::{Plane3, dot};
+use crate::methods::rays::Plane3;
 use crate::util::random::Random;
+use crate::util::vec3::dot;
 
 /// Columns and rows of the smallest cells.
 const SMALLEST: usize = 16;

@@ -5,8 +5,9 @@
 
 use crate::baselines::cloud::Cloud;
 use crate::baselines::pieces::{Pieces, Tolerance};
-use crate::methods::rays::{Plane3, Vec3};
+use crate::methods::rays::Plane3;
 use crate::util::random::Random;
+use crate::util::vec3::Vec3;
 
 /// Points of the first subset.
 pub(super) const FIRST: usize = 512;

@@ -12,11 +12,12 @@ use super::grid::{Grid, NONE, Place};
 use super::pyramid::Pyramid;
 use super::region::{CellBox, Region};
 use super::thresholds::{BOW, BOW_VARIANCES, SHOWN, SHOWN_MOST, SHOWN_PIXELS, TURN, TURN_ERROR};
-use crate::methods::rays::{Rays, Vec3, dot, sub};
+use crate::methods::rays::Rays;
 use crate::statistics::least_squares::Moments;
 use crate::statistics::quadratic::QuadraticSums;
 use crate::util::memory::reserve_to;
 use crate::util::runs::each_run;
+use crate::util::vec3::{Vec3, dot, sub};
 use std::ops::Range;
 
 /// Where x and y of a region's quadratic are 0, and pixels per unit.

@@ -17,7 +17,7 @@ use super::thresholds::{
     Allowance, BOWED_ANGLE, GENTLE, GENTLE_LARGER, GENTLE_SHARE, GENTLE_SIZE, JOINT_GAIN, JOINT_MISS, LOOSE_GAIN,
     LOOSE_MISS, TURN,
 };
-use crate::methods::rays::{Rays, dot};
+use crate::methods::rays::Rays;
 use crate::noise::NoiseModel;
 use crate::statistics::quadratic::QuadraticSums;
 use crate::util::memory::reserve_to;
@@ -25,6 +25,7 @@ use crate::util::parallel::{Numbered, map_reduce};
 use crate::util::runs::each_run;
 use crate::util::switches::is_on;
 use crate::util::union_find::{find, unite};
+use crate::util::vec3::dot;
 
 /// Fewest cells that a quadratic, six numbers, is fitted to.
 const QUADRATIC_CELLS: f64 = 12.0;

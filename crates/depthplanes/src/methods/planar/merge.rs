@@ -9,7 +9,7 @@ use super::region::Region;
 use super::thresholds::{BOWED_ANGLE, BOWED_EXCESS, BOWED_MERGE, BOWED_STEP, MERGE, STEP_NOISE};
 use crate::error::{Error, Result};
 use crate::limits::MAX_PLANES;
-use crate::methods::rays::{Rays, dot};
+use crate::methods::rays::Rays;
 use crate::statistics::least_squares::Moments;
 use crate::util::bits::each_one;
 use crate::util::memory::reserve_to;
@@ -17,6 +17,7 @@ use crate::util::parallel::{for_row_blocks, map_reduce};
 use crate::util::simd::vectorised;
 use crate::util::switches::is_on;
 use crate::util::union_find::find;
+use crate::util::vec3::dot;
 use std::ops::Range;
 
 /// Two regions with tiles side by side, or with one tile of no region between.

@@ -6,12 +6,13 @@ use super::thresholds::EDGE_ON;
 use crate::camera::ValueKind;
 use crate::error::Result;
 use crate::map::DepthView;
-use crate::methods::rays::{Rays, Vec3};
+use crate::methods::rays::Rays;
 use crate::noise::{NoiseModel, Space};
 use crate::statistics::least_squares::Moments;
 use crate::util::memory::reserve_to;
 use crate::util::runs::each_run;
 use crate::util::switches::is_on;
+use crate::util::vec3::Vec3;
 
 /// Below so many pixels a region's plane is too uncertain to be held against a neighbour: the cell is
 /// tested against the plane of both.
