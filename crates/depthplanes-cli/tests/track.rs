@@ -131,6 +131,34 @@ fn raw_frames_come_from_a_pipe_and_an_end_in_the_middle_is_said() {
 }
 
 #[test]
+fn a_source_that_stalls_is_said_once_and_waited_for() {
+    let bench = Bench::new("track_stalls");
+    let words = ["track", "-", "--raw-size", "32x24", "--encoding", "millimetre", "--min-pixels", "50", "--out", "-"];
+    let mut command = bench.command();
+    command.args(words).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let mut pipe = child.stdin.take().unwrap();
+    pipe.write_all(&[4; 32 * 24 * 2]).unwrap();
+    std::thread::sleep(Duration::from_secs(8));
+    pipe.write_all(&[4; 32 * 24 * 2]).unwrap();
+    drop(pipe);
+    let ran = Ran::from(child.wait_with_output().unwrap());
+    assert_eq!((lines(&ran.out).len(), ran.code), (2, Some(0)), "{}", ran.err);
+    assert_eq!(ran.err.matches("no frame has come from the source for").count(), 1, "{}", ran.err);
+}
+
+#[test]
+fn frames_searched_at_the_same_time_give_the_same_lines() {
+    let bench = Bench::new("track_jobs");
+    let run = |jobs: &str| {
+        bench.run(&["track", "scene:room:size=160x120,frames=20", "--floor", "--jobs", jobs, "--out", "-"]).ok()
+    };
+    let one = run("1");
+    assert_eq!(lines(&one).len(), 20);
+    assert!(run("2") == one && run("5") == one);
+}
+
+#[test]
 fn what_ends_the_program_leaves_whole_lines() {
     let bench = Bench::new("track_killed");
     let words = ["track", "scene:boxes:size=64x48,frames=1000000", "--out", "t.jsonl"];

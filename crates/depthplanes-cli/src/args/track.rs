@@ -25,6 +25,8 @@ pub(crate) struct Track {
     pub(crate) camera_height: Option<f64>,
     /// Whether the newest frames are wanted, and others dropped.
     pub(crate) live: bool,
+    /// Threads that find planes, if stated.
+    pub(crate) jobs: Option<usize>,
     /// The most frames that are read.
     pub(crate) frames: Option<u64>,
     pub(crate) kept_frames: Option<u32>,
@@ -46,6 +48,8 @@ pub(super) fn command(method: Vec<Arg>) -> Command {
     ];
     let running = [
         flags::switch("live", "Drop frames rather than fall behind: the newest ones are wanted"),
+        flags::count("jobs", "N")
+            .help("Frames searched at the same time; changes no result [default: cores, at most 4]"),
         flags::count("frames", "N").help("Stop after so many frames"),
         flags::count("kept-frames", "N").help("Frames for which a plane that is not seen keeps its id [default: 30]"),
         flags::switch("ignore-poses", "Estimate how the camera moves even where the source says it"),
@@ -76,6 +80,7 @@ pub(super) fn from_matches(matches: &ArgMatches, method: &'static MethodInfo) ->
         up: matches.get_one("up").copied(),
         camera_height: matches.get_one("camera-height").copied(),
         live: matches.get_flag("live"),
+        jobs: count("jobs"),
         frames: count("frames").map(|frames| frames as u64),
         kept_frames: count("kept-frames").map(|frames| frames as u32),
         ignore_poses: matches.get_flag("ignore-poses"),

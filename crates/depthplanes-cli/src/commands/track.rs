@@ -1,13 +1,16 @@
 //! `depthplanes track`: planes that keep their ids over the frames of a video.
 //!
-//! In: a source of frames. Out: a line of JSON for each frame, label images, pictures. Three threads: one reads and decodes,
-//! one finds and follows planes, one writes; the queues between them are short, so that the slowest sets the pace.
+//! In: a source of frames. Out: a line of JSON for each frame, label images, pictures. One thread reads and decodes, some
+//! find planes, each in a frame of its own, and one gives them their ids and writes, frame after frame. The queues between
+//! them are short, so that the slowest sets the pace.
 
+mod find;
 mod folders;
 mod follow;
 mod pace;
 mod queue;
 mod record;
+mod stall;
 mod watch;
 mod writer;
 
@@ -17,22 +20,26 @@ use crate::load;
 use crate::run::Recipe;
 use depthplanes::noise::SensorNoise;
 use depthplanes_video::{Source, SourceOptions, open};
-use follow::{Followed, Follower, Read};
+use find::{Finder, Read, Searched};
+use follow::Follower;
 use pace::Pace;
-use queue::{Closing, Queue};
+use queue::{Came, Closing, InTurn, Queue, Taken, Taking};
+use stall::Stall;
 use std::io::Write;
 use std::time::{Duration, Instant};
 use writer::Writer;
 
-/// Frames that wait between two threads.
+/// Frames that wait to be searched.
 const WAITING: usize = 2;
+/// Frames that may be done before the one that is next, while that one is searched.
+const AHEAD: u64 = 2;
+/// Threads that find planes where no number is stated: more than these wait for the one that reads, since finding takes
+/// about twice as long as decoding.
+const MOST_JOBS: usize = 4;
 /// Frames that fail of which is said why; the lines say it of all.
 const MOST_SAID: u64 = 5;
 /// How often the pace is said.
 const EVERY: Duration = Duration::from_secs(1);
-
-/// A frame that is done, or could not be read.
-type Done = Result<Box<Followed>, (u64, Failure)>;
 
 pub(super) fn run(wanted: &Track, out: &mut dyn Write) -> Outcome {
     let recipe = Recipe::new(wanted.method, &wanted.parameters, 1)?;
@@ -42,50 +49,79 @@ pub(super) fn run(wanted: &Track, out: &mut dyn Write) -> Outcome {
     folders::check(wanted)?;
     let mut source = open(&wanted.source, &options)?;
     let frames = source.frames().map(|frames| wanted.frames.map_or(frames, |most| most.min(frames)));
-    let mut follower = Follower::new(wanted, &recipe)?;
+    let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
+    let finders = (0..wanted.jobs.unwrap_or(cores.min(MOST_JOBS))).map(|_| Finder::new(wanted, &recipe));
+    let finders = finders.collect::<Outcome<Vec<_>>>()?;
+    let mut follower = Follower::new(wanted);
     let mut writer = Writer::new(wanted)?;
-    let (read, done) = (Queue::new(WAITING, wanted.live), Queue::new(WAITING, false));
+    let (read, done, stall) = (Queue::new(WAITING, wanted.live), InTurn::new(finders.len(), AHEAD), Stall::default());
     std::thread::scope(|scope| {
-        scope.spawn(|| read_all(source.as_mut(), wanted.frames, &read));
-        scope.spawn(|| follow_all(&mut follower, &read, &done));
-        write_all(&mut writer, &done, frames, out)
+        // However this ends, the other threads do.
+        let (_read, _done) = (Closing(&read), Closing(&Taking(&done)));
+        for finder in finders {
+            let (read, done) = (&read, &done);
+            thread(scope, move || find_all(finder, read, done))?;
+        }
+        thread(scope, || read_all(source.as_mut(), wanted.frames, &stall, &read))?;
+        write_all(&mut follower, &mut writer, &done, &stall, frames, out)
     })
 }
 
-fn read_all(source: &mut dyn Source, most: Option<u64>, read: &Queue<Read>) {
+/// Starts a thread.
+fn thread<'scope>(scope: &'scope std::thread::Scope<'scope, '_>, work: impl FnOnce() + Send + 'scope) -> Outcome {
+    let started = std::thread::Builder::new().spawn_scoped(scope, work);
+    started.map(drop).map_err(|error| {
+        Failure::machine(format!("`track` cannot make its threads ({error}); it needs one, and one for each of --jobs"))
+    })
+}
+
+fn read_all(source: &mut dyn Source, most: Option<u64>, stall: &Stall, read: &Queue<Read>) {
     let _closing = Closing(read);
     for index in 0..most.unwrap_or(u64::MAX) {
         let start = Instant::now();
-        let Some(frame) = source.next_frame() else { break };
-        if !read.send((start, index, frame)) {
+        let Some(frame) = stall.during(|| source.next_frame()) else { break };
+        if !read.send(Read { start, index, frame }) {
             break;
         }
     }
 }
 
-fn follow_all(follower: &mut Follower<'_>, read: &Queue<Read>, done: &Queue<Done>) {
-    let (_reading, _closing) = (Closing(read), Closing(done));
-    while let Some(((start, index, frame), dropped)) = read.take() {
-        let followed = frame.map_err(Failure::from).and_then(|frame| follower.follow(start, frame, dropped));
-        if !done.send(followed.map(Box::new).map_err(|failure| (index, failure))) {
-            break;
-        }
-    }
-    follower.watch.end();
-}
-
-fn write_all(writer: &mut Writer<'_>, done: &Queue<Done>, frames: Option<u64>, out: &mut dyn Write) -> Outcome {
+fn find_all(mut finder: Finder<'_>, read: &Queue<Read>, done: &InTurn<Searched>) {
     let _closing = Closing(done);
+    while let Some(Taken { element, turn, dropped }) = read.take() {
+        if !done.send(turn, finder.search(element, dropped)) {
+            read.close();
+        }
+    }
+}
+
+fn write_all(
+    follower: &mut Follower,
+    writer: &mut Writer<'_>,
+    done: &InTurn<Searched>,
+    stall: &Stall,
+    frames: Option<u64>,
+    out: &mut dyn Write,
+) -> Outcome {
     let (mut pace, mut said) = (Pace::new(), Instant::now());
     let (mut failed, mut dropped) = (0u64, 0u64);
-    while let Some((frame, _)) = done.take() {
-        match frame {
+    loop {
+        let searched = match done.take_within(EVERY) {
+            Came::Element(searched) => searched,
+            Came::Nothing => {
+                stall.look();
+                continue;
+            }
+            Came::End => break,
+        };
+        let index = searched.index;
+        match follower.follow(searched) {
             Ok(frame) => {
                 dropped = frame.dropped;
                 writer.write(&frame, out)?;
                 pace.add(frame.start.elapsed());
             }
-            Err((index, failure)) => {
+            Err(failure) => {
                 failed += 1;
                 writer.write_failed(index, &failure.to_string(), out)?;
                 if failed <= MOST_SAID {
@@ -99,6 +135,7 @@ fn write_all(writer: &mut Writer<'_>, done: &Queue<Done>, frames: Option<u64>, o
             say(&format!("frame {}{of}: {}", pace.frames + failed, pace.line()));
         }
     }
+    follower.watch.end();
     writer.end(out)?;
     say(&format!("{} frames: {}", pace.frames, pace.line()));
     if dropped > 0 {

@@ -18,19 +18,19 @@ pub(super) fn record(frame: &Followed) -> Value {
     let hidden = |state: TrackState| tracks.planes.iter().filter(move |track| track.state == state).map(hidden);
     let mut record = json!({
         "schema": SCHEMA,
-        "index": frame.index,
-        "name": frame.name,
-        "time_s": frame.time_s,
+        "index": frame.video.index,
+        "name": frame.video.name,
+        "time_s": frame.video.time_s,
         "width": frame.detection.width,
         "height": frame.detection.height,
-        "pose": frame.pose.map(|pose| json!({"rotation": pose.rotation(), "translation_m": pose.translation_m()})),
+        "pose": frame.video.pose.map(|pose| json!({"rotation": pose.rotation(), "translation_m": pose.translation_m()})),
         "planes": seen.collect::<Vec<_>>(),
         "lost": hidden(TrackState::Lost).collect::<Vec<_>>(),
         "subsumed": hidden(TrackState::Subsumed).collect::<Vec<_>>(),
         "dropped": frame.dropped,
     });
     if let Some(ground) = &frame.ground {
-        record["ground"] = ground.clone();
+        record["ground"] = ground.record.clone();
     }
     record
 }

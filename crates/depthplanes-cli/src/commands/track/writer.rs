@@ -52,7 +52,7 @@ impl<'a> Writer<'a> {
     /// What the machine says, and ids that no label image holds.
     pub(super) fn write(&mut self, frame: &Followed, out: &mut dyn Write) -> Outcome {
         self.line(&record::record(frame).to_string(), out)?;
-        let stem = format!("{:06}", frame.index);
+        let stem = format!("{:06}", frame.video.index);
         if let Some(folder) = &self.wanted.labels {
             let found = &frame.detection;
             let png = grey16_png(found.width, found.height, &by_id(frame)?);
@@ -60,10 +60,10 @@ impl<'a> Writer<'a> {
         }
         if let Some(folder) = &self.wanted.overlays {
             let path = folder.join(format!("{stem}.png"));
-            match &frame.ground_png {
+            match frame.ground.as_ref().and_then(|ground| ground.png.as_ref()) {
                 Some(png) => outputs::write_file(&path, png)?,
                 None => {
-                    let (view, sensor) = (frame.frame.view()?, &frame.frame.sensor);
+                    let (view, sensor) = (frame.video.frame.view()?, &frame.video.frame.sensor);
                     outputs::write_file(&path, &tracked_png(view, sensor, &frame.detection, &frame.tracks.ids)?)?;
                 }
             }
@@ -71,8 +71,9 @@ impl<'a> Writer<'a> {
         self.frames += 1;
         for plane in &frame.detection.planes {
             let Some(id) = frame.tracks.id_of(plane.label) else { continue };
-            let summary = self.summaries.entry(id).or_insert(Summary { first: frame.index, ..Summary::default() });
-            summary.last = frame.index;
+            let summary =
+                self.summaries.entry(id).or_insert(Summary { first: frame.video.index, ..Summary::default() });
+            summary.last = frame.video.index;
             summary.frames += 1;
             summary.pixels += plane.pixel_count as u64;
             if self.summaries.len() > 4 * MOST_SUMMARIES {
