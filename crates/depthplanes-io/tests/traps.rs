@@ -202,7 +202,11 @@ fn planes_out_of_sight_are_named() {
     // Too few pixels for a background, enough for a plane.
     let bytes =
         floats(|at, depth| if at % 128 < 16 && at / 128 < 12 { 500.0 + 0.1 * (at % 128) as f64 } else { depth });
-    noted("500 m", &read(&bytes, &camera()), &["lies at a depth of", "--valid-range"]);
+    noted("500 m", &read(&bytes, &camera()), &["lies at a depth of", "a background", "--valid-range"]);
+    // One plane of four says nothing of the unit.
+    let bytes =
+        floats(|at, depth| if at % 128 < 16 && at / 128 < 12 { 0.004 + 1e-6 * (at % 128) as f64 } else { depth });
+    noted("4 mm", &read(&bytes, &camera()), &["lies at a depth of", "pixels without depth", "--missing"]);
     let wide = depthplanes::Intrinsics { fx: 1e-2, fy: 1e-2, ..CAMERA };
     let frame = read(&counts(|_, _| 3000.0), &ReadOptions { intrinsics: Some(wide), ..Default::default() });
     noted("a focal length of nothing", &frame, &["m2", "check the camera"]);

@@ -9,6 +9,9 @@ use crate::traps::{EXACTLY, doubt_of_depth, length};
 /// The largest plane that a camera may see, m2: a field of 100 m x 100 m.
 const LARGEST_M2: f64 = 1e4;
 
+/// Metres: what is out of sight and nearer than this is too near, not too far.
+const NEAR_M: f64 = 1.0;
+
 /// A plane nearer or farther than cameras see.
 pub(super) fn out_of_sight(report: &Report<'_>) -> Option<String> {
     let depth = |metric: &MetricPlane| metric.centroid_m[2];
@@ -27,11 +30,11 @@ pub(super) fn out_of_sight(report: &Report<'_>) -> Option<String> {
         1 => String::new(),
         count => format!(" and {} more planes do so", count - 1),
     };
-    // One odd plane among others is a background; if all are odd it is the unit.
-    let remedy = if odd.len() * 2 > report.detection.planes.len() || *depth_m < 1.0 {
-        remedy.clone()
-    } else {
-        "a background rather than a surface? try --valid-range or --missing".into()
+    // If most are odd it is the unit; a few among others are no surfaces.
+    let remedy = match (odd.len() * 2 > report.detection.planes.len(), *depth_m < NEAR_M) {
+        (true, _) => remedy.clone(),
+        (false, true) => "pixels without depth rather than a surface? try --missing or --valid-range".into(),
+        (false, false) => "a background rather than a surface? try --valid-range or --missing".into(),
     };
     Some(format!("plane {label} lies at a depth of {}{others}, where no camera sees: {remedy}", length(*depth_m)))
 }
