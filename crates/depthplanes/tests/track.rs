@@ -57,9 +57,9 @@ fn a_plane_that_was_hidden_gets_its_id_back_and_one_that_is_gone_does_not() {
 }
 
 #[test]
-fn what_is_seen_once_is_kept_for_three_frames() {
+fn what_is_seen_once_is_kept_for_ten_frames() {
     let (wall, speck) = (([0, 70], 3000), ([80, 150], 2500));
-    for (hidden, id) in [(3, 2), (4, 3)] {
+    for (hidden, id) in [(10, 2), (11, 3)] {
         let mut tracker = Tracker::default();
         track(&mut tracker, &[wall, speck]);
         (0..hidden).for_each(|_| drop(track(&mut tracker, &[wall]).clone()));
@@ -157,19 +157,19 @@ fn identity(spec: &str, speed: f64, frames: u64, with_pose: bool) -> (Identity, 
 
 /// Scenes, sensors, and the least share of planes and of points that keep their ids: a hundredth below what was measured.
 const WALKS: [(&str, f64, f64); 8] = [
-    ("room:sensor=kinect", 0.96, 0.96),
-    ("stairs:sensor=kinect", 0.97, 0.985),
-    ("boxes:sensor=kinect", 0.985, 0.985),
-    ("corridor:sensor=kinect", 0.97, 0.985),
-    ("room:sensor=kinect2", 0.925, 0.95),
-    ("room:sensor=azure", 0.955, 0.94),
-    ("room:sensor=realsense", 0.88, 0.945),
+    ("room:sensor=kinect", 0.97, 0.965),
+    ("stairs:sensor=kinect", 0.985, 0.99),
+    ("boxes:sensor=kinect", 0.99, 0.99),
+    ("corridor:sensor=kinect", 0.99, 0.99),
+    ("room:sensor=kinect2", 0.94, 0.95),
+    ("room:sensor=azure", 0.965, 0.94),
+    ("room:sensor=realsense", 0.91, 0.955),
     ("room:sensor=stereo", 0.98, 0.985),
 ];
 
 #[test]
 fn ids_are_kept_while_the_camera_moves_with_its_pose_or_without() {
-    let mut misses = Vec::new();
+    let (mut misses, mut means, mut all_switches) = (Vec::new(), [0.0; 2], [0; 2]);
     for (spec, planes, points) in WALKS {
         for with_pose in [true, false] {
             let (found, _) = identity(spec, 1.0, 12, with_pose);
@@ -182,9 +182,15 @@ fn ids_are_kept_while_the_camera_moves_with_its_pose_or_without() {
             if kept[0] < planes || kept[1] < points || found.expected_planes < 100 {
                 misses.push((spec, with_pose, kept));
             }
+            means = [0, 1].map(|at| means[at] + kept[at] / (2 * WALKS.len()) as f64);
+            all_switches = [all_switches[0] + switches, all_switches[1] + plane_frames];
         }
     }
+    println!("mean: planes {:.3}, points {:.3}, {} of {}", means[0], means[1], all_switches[0], all_switches[1]);
     assert!(misses.is_empty(), "{misses:?}");
+    assert!(means[0] >= 0.97 && means[1] >= 0.98, "{means:?}");
+    // The aim is one of 200; this holds what there is.
+    assert!(120 * all_switches[0] <= all_switches[1], "{all_switches:?}");
 }
 
 #[test]

@@ -20,7 +20,7 @@ pub struct IdentityFrame<'a> {
     pub ids: &'a [u32],
 }
 
-/// Share of the smaller of two planes that lies in the other if both are one.
+/// Share of the smaller of two planes that lies in the other if both are one, and of the union of a surface and its plane.
 const SAME: f64 = 0.5;
 
 /// The measures of a sequence, frame by frame.
@@ -51,14 +51,15 @@ pub struct Identity {
     pub kept_planes: u64,
     /// Pixels of those.
     pub kept_points: u64,
-    /// Surfaces with a plane that had one in some earlier frame, over all frames.
+    /// Surfaces with a plane that had one in some earlier frame, over all frames. A plane is a surface's if they share half of
+    /// their union.
     pub plane_frames: u64,
-    /// Those whose largest plane has an id that no plane of the surface had before.
+    /// Those whose plane has another id than the one before it, the mismatches of CLEAR MOT (Bernardin and Stiefelhagen 2008).
     pub switches: u64,
     /// Labels and ids of the frame before.
     last: (Vec<u16>, Vec<u32>),
-    /// The ids that each surface has had.
-    known: BTreeMap<u32, BTreeSet<u32>>,
+    /// The id that each surface's plane had last.
+    id_of_surface: BTreeMap<u32, u32>,
 }
 
 impl Identity {
@@ -105,21 +106,21 @@ impl Identity {
         }
     }
 
+    /// Surfaces and planes correspond if their intersection is at least [`SAME`] of their union: then no two correspond to one.
     fn count_switches(&mut self, surfaces: &[u32], labels: &[u16], ids: &[u32]) {
-        let pairs = surfaces.iter().copied().zip(labels.iter().copied());
-        let (mut is_seen, mut now) = (BTreeSet::new(), Vec::new());
-        for ((surface, label), _) in ranked(pairs) {
-            let id = ids[usize::from(label) - 1];
-            now.push((surface, id));
-            // The largest plane of the surface comes first.
-            let known = self.known.get(&surface).filter(|_| is_seen.insert(surface));
-            if let Some(known) = known {
-                self.plane_frames += 1;
-                self.switches += u64::from(!known.contains(&id));
+        let mut of_surface: BTreeMap<u32, u64> = BTreeMap::new();
+        surfaces.iter().for_each(|&surface| *of_surface.entry(surface).or_default() += 1);
+        let of_label = pixels_of(labels, ids.len());
+        for ((surface, label), shared) in ranked(surfaces.iter().copied().zip(labels.iter().copied())) {
+            let union = of_surface[&surface] + of_label[usize::from(label)] - shared;
+            if (shared as f64) < SAME * union as f64 {
+                continue;
             }
-        }
-        for (surface, id) in now {
-            self.known.entry(surface).or_default().insert(id);
+            let id = ids[usize::from(label) - 1];
+            if let Some(last) = self.id_of_surface.insert(surface, id) {
+                self.plane_frames += 1;
+                self.switches += u64::from(last != id);
+            }
         }
     }
 

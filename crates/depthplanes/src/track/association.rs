@@ -4,19 +4,16 @@
 //! for each that is part of another now, and the origin of planes that split off.
 
 use super::egomotion::{self, Pair};
-use super::field::{Field, Overlap, STEP};
+use super::field::{Field, Overlap};
 use super::filter::State;
 use super::pose::Motion;
-use super::tracked::{TrackState, TrackedPlane};
+use super::tracked::TrackedPlane;
 use crate::camera::HessianNormalForm;
 use crate::detection::{Detection, MetricPlane};
 use crate::util::vec3::{dot, quadratic_form};
 
 /// Least intersection over union of a track and its plane: below it they share no more than a border or a corner.
 const LEAST_IOU: f64 = 0.1;
-/// Intersection over union from where on what is seen now is what was seen before, whatever its equation: nothing else
-/// can be seen through mostly the same pixels a frame later.
-const SAME_PIXELS: f64 = 0.5;
 /// Share of a track or a plane that lies in another of which it is part.
 const PART: f64 = 0.5;
 /// Share of a plane that an older track makes up at least to go on as that plane.
@@ -25,6 +22,9 @@ const OLD_PART: f64 = 0.25;
 const ANGLE_SD: f64 = 0.035;
 /// The same for its distance, in metres for each metre of depth.
 const OFFSET_SD: f64 = 0.01;
+/// Squared deviations, of 1 degree of freedom, up to which what is seen in a track's pixels is where the track should be: one
+/// of 100 is not by chance. How it is turned does not count: small planes turn by far more than their covariance says.
+const THERE: f64 = 6.6;
 /// Squared deviations, of 3 degrees of freedom, up to which two planes may be one: one of 100 is not by chance.
 const ALIKE: f64 = 11.3;
 /// Radians up to which two planes may be one before the motion of the camera is known: 15 degrees.
@@ -54,9 +54,9 @@ impl Association {
     /// Ranks the overlaps by intersection over union, then by track and label.
     fn rank(&mut self, found: &Detection, field: &Field) {
         let iou = |overlap: &Overlap| {
-            let both = f64::from(overlap.points);
-            let now = found.planes[usize::from(overlap.label) - 1].pixel_count as f64 / (STEP * STEP) as f64;
-            both / (f64::from(field.points_of(overlap.track)) + now - both).max(both)
+            let both = f64::from(overlap.pixels);
+            let now = found.planes[usize::from(overlap.label) - 1].pixel_count as f64;
+            both / (f64::from(field.pixels_of(overlap.track)) + now - both).max(both)
         };
         self.ranked.clear();
         self.ranked.extend(self.overlaps.iter().map(|overlap| (iou(overlap), *overlap)));
@@ -66,15 +66,15 @@ impl Association {
     }
 
     /// Pairs tracks and labels one to one, the best overlap first.
-    fn take(&mut self, tracks: usize, labels: usize, mut accepts: impl FnMut(f64, &Overlap) -> bool) {
+    fn take(&mut self, tracks: usize, labels: usize, mut accepts: impl FnMut(&Overlap) -> bool) {
         self.labels.clear();
         self.labels.resize(tracks, None);
         self.owners.clear();
         self.owners.resize(labels, None);
-        for (iou, overlap) in self.ranked.iter().take_while(|(iou, _)| *iou >= LEAST_IOU) {
+        for (_, overlap) in self.ranked.iter().take_while(|(iou, _)| *iou >= LEAST_IOU) {
             let owner = &mut self.owners[usize::from(overlap.label) - 1];
             let label = &mut self.labels[overlap.track];
-            if owner.is_none() && label.is_none() && accepts(*iou, overlap) {
+            if owner.is_none() && label.is_none() && accepts(overlap) {
                 (*label, *owner) = (Some(overlap.label), Some(overlap.track));
             }
         }
@@ -84,7 +84,7 @@ impl Association {
     pub(super) fn egomotion(&mut self, found: &Detection, field: &Field, states: &[Option<State>]) -> Motion {
         let metric = |label: u16| found.planes[usize::from(label) - 1].metric;
         self.rank(found, field);
-        self.take(states.len(), found.planes.len(), |_, overlap| {
+        self.take(states.len(), found.planes.len(), |overlap| {
             let planes = states[overlap.track].zip(metric(overlap.label));
             planes.is_some_and(|(before, now)| angle(&before.plane, &now.plane) < MOST_TURN)
         });
@@ -116,9 +116,9 @@ impl Association {
             None => true, // not metric: the pixels alone decide
         };
         self.rank(found, field);
-        self.take(planes.len(), found.planes.len(), |iou, overlap| {
-            let was_seen = matches!(planes[overlap.track].state, TrackState::New | TrackState::Tracked);
-            (was_seen && iou >= SAME_PIXELS) || agree(overlap)
+        self.take(planes.len(), found.planes.len(), |overlap| {
+            let both = states[overlap.track].zip(metric(overlap.label));
+            both.is_none_or(|(state, metric)| moved(&state, &metric) <= THERE)
         });
         self.prefer_older(found, field, agree);
         self.subsumed_by.clear();
@@ -127,14 +127,14 @@ impl Association {
         self.split_from.resize(found.planes.len(), None);
         for overlap in &self.overlaps {
             let label = usize::from(overlap.label) - 1;
-            let points = f64::from(overlap.points);
-            let of_label = PART * found.planes[label].pixel_count as f64 / (STEP * STEP) as f64;
-            let of_track = PART * f64::from(field.points_of(overlap.track));
+            let pixels = f64::from(overlap.pixels);
+            let of_label = PART * found.planes[label].pixel_count as f64;
+            let of_track = PART * f64::from(field.pixels_of(overlap.track));
             match (self.labels[overlap.track], self.owners[label]) {
-                (None, Some(owner)) if points >= of_track && agree(overlap) => {
+                (None, Some(owner)) if pixels >= of_track && agree(overlap) => {
                     self.subsumed_by[overlap.track] = Some(planes[owner].id);
                 }
-                (Some(_), None) if points >= of_label && agree(overlap) => {
+                (Some(_), None) if pixels >= of_label && agree(overlap) => {
                     self.split_from[label] = Some(planes[overlap.track].id);
                 }
                 _ => (),
@@ -148,10 +148,10 @@ impl Association {
         for overlap in &self.overlaps {
             let label = usize::from(overlap.label) - 1;
             let Some(owner) = self.owners[label].filter(|&owner| overlap.track < owner) else { continue };
-            let points = f64::from(overlap.points);
-            let of_label = OLD_PART * found.planes[label].pixel_count as f64 / (STEP * STEP) as f64;
-            let of_track = PART * f64::from(field.points_of(overlap.track));
-            if self.labels[overlap.track].is_none() && points >= of_label.max(of_track) && agree(overlap) {
+            let pixels = f64::from(overlap.pixels);
+            let of_label = OLD_PART * found.planes[label].pixel_count as f64;
+            let of_track = PART * f64::from(field.pixels_of(overlap.track));
+            if self.labels[overlap.track].is_none() && pixels >= of_label.max(of_track) && agree(overlap) {
                 (self.labels[owner], self.labels[overlap.track]) = (None, Some(overlap.label));
                 self.owners[label] = Some(overlap.track);
             }
@@ -185,13 +185,18 @@ fn pair(before: &State, now: &MetricPlane) -> Pair {
     }
 }
 
-/// Whether what is seen now may be the track's plane.
-fn is_alike(state: &State, now: &MetricPlane) -> bool {
+/// How far the middle of what is seen now is off the track's plane, squared, in deviations.
+fn moved(state: &State, now: &MetricPlane) -> f64 {
     let at = now.centroid_m;
-    let [[normal_before, height_before], [normal, height]] =
-        [variances(&state.covariance(), at), variances(&now.covariance, at)];
-    let turned = angle(&state.plane, &now.plane).powi(2) / (normal_before + normal + ANGLE_SD * ANGLE_SD);
+    let [height_before, height] = [&state.covariance(), &now.covariance].map(|covariance| variances(covariance, at)[1]);
     let offset = dot(state.plane.normal, at) + state.plane.distance;
-    let moved = offset * offset / (height_before + height + (OFFSET_SD * at[2]).powi(2));
-    turned + moved <= ALIKE
+    offset * offset / (height_before + height + (OFFSET_SD * at[2]).powi(2))
+}
+
+/// Whether what is seen now may be the track's plane, also where their pixels do not say so.
+fn is_alike(state: &State, now: &MetricPlane) -> bool {
+    let [before, seen] =
+        [&state.covariance(), &now.covariance].map(|covariance| variances(covariance, now.centroid_m)[0]);
+    let turned = angle(&state.plane, &now.plane).powi(2) / (before + seen + ANGLE_SD * ANGLE_SD);
+    turned + moved(state, now) <= ALIKE
 }

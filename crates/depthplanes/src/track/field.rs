@@ -2,11 +2,21 @@
 
 use super::pose::Motion;
 use crate::camera::{HessianNormalForm, Intrinsics};
-use crate::detection::Detection;
+use crate::detection::{Detection, PixelBox};
 use std::ops::Range;
 
-/// Pixels from one point of the lattice to the next, along both axes: the smallest planes have six points.
-pub(super) const STEP: usize = 4;
+/// Pixels from one point of the lattice to the next, along both axes.
+const STEP: usize = 4;
+/// The same for planes of fewer pixels than this: one point of 16 of them would say little of where they are.
+const FINE_STEP: usize = 2;
+const SMALL: usize = 1024;
+
+/// The points of a track: where they stand, and how many pixels each stands for.
+#[derive(Clone, Debug, Default)]
+struct Points {
+    range: Range<usize>,
+    pixels: u32,
+}
 
 /// Points of tracks, track by track.
 #[derive(Clone, Debug, Default)]
@@ -14,32 +24,33 @@ pub(super) struct Field {
     /// (u, v), pixels; not a number where a point went behind the camera.
     points: Vec<[f32; 2]>,
     /// The points of each track.
-    ranges: Vec<Range<usize>>,
+    tracks: Vec<Points>,
     /// Memory for the next field.
-    next: (Vec<[f32; 2]>, Vec<Range<usize>>),
+    next: (Vec<[f32; 2]>, Vec<Points>),
     /// How many points of a track have each label; 0 beside those in `touched`.
     counts: Vec<u32>,
     touched: Vec<u16>,
 }
 
-/// How many points of a track have a label now.
+/// How many pixels of a track have a label now.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Overlap {
     pub(super) track: usize,
     pub(super) label: u16,
-    pub(super) points: u32,
+    pub(super) pixels: u32,
 }
 
 impl Field {
     /// Forgets where the tracks were: pictures of another size are not compared.
     pub(super) fn forget(&mut self) {
         self.points.clear();
-        self.ranges.iter_mut().for_each(|range| *range = 0..0);
+        self.tracks.fill(Points::default());
     }
 
-    /// How many points a track has.
-    pub(super) fn points_of(&self, track: usize) -> u32 {
-        self.ranges[track].len() as u32
+    /// How many pixels the points of a track stand for.
+    pub(super) fn pixels_of(&self, track: usize) -> u32 {
+        let Points { range, pixels } = &self.tracks[track];
+        range.len() as u32 * pixels
     }
 
     /// Moves the points of a track as the camera moved, each with the plane it is on: by the homography
@@ -53,7 +64,7 @@ impl Field {
             [a, b, c - a * camera.cx - b * camera.cy].map(|entry| entry as f32)
         });
         let [fx, fy, cx, cy] = [camera.fx, camera.fy, camera.cx, camera.cy].map(|number| number as f32);
-        for point in &mut self.points[self.ranges[track].clone()] {
+        for point in &mut self.points[self.tracks[track].range.clone()] {
             let [u, v] = *point;
             let [x, y, z] = rows.map(|[a, b, c]| a * u + b * v + c);
             let is_ahead = z > 0.0;
@@ -67,8 +78,8 @@ impl Field {
         overlaps.clear();
         self.counts.resize(found.planes.len() + 1, 0);
         let (width, height) = (found.width as f32, found.height as f32);
-        for track in 0..self.ranges.len() {
-            for &[u, v] in &self.points[self.ranges[track].clone()] {
+        for (track, Points { range, pixels }) in self.tracks.iter().enumerate() {
+            for &[u, v] in &self.points[range.clone()] {
                 let [u, v] = [u + 0.5, v + 0.5]; // to the nearest pixel
                 if !(u >= 0.0 && v >= 0.0 && u < width && v < height) {
                     continue;
@@ -84,7 +95,7 @@ impl Field {
             for label in self.touched.drain(..) {
                 let points = std::mem::take(&mut self.counts[usize::from(label)]);
                 if label != 0 {
-                    overlaps.push(Overlap { track, label, points });
+                    overlaps.push(Overlap { track, label, pixels: points * pixels });
                 }
             }
         }
@@ -99,40 +110,58 @@ impl Field {
         label_of: impl Fn(usize) -> Option<u16>,
         old_of: impl Fn(usize) -> Option<usize>,
     ) {
-        let (points, ranges) = &mut self.next;
+        let (points, tracks_next) = &mut self.next;
         points.clear();
-        ranges.clear();
+        tracks_next.clear();
+        let is_small = |label: u16| label == 0 || found.planes[usize::from(label) - 1].pixel_count < SMALL;
         let lattice = || {
             let rows = (STEP / 2..found.height).step_by(STEP);
-            rows.flat_map(|v| {
+            let points = rows.flat_map(|v| {
                 let row = &found.labels[v * found.width..(v + 1) * found.width];
                 (STEP / 2..found.width).step_by(STEP).map(move |u| (u, v, row[u]))
-            })
+            });
+            points.filter(|&(_, _, label)| !is_small(label))
         };
-        // First how many points each label has, then where its next point goes.
+        // First how many points each large plane has, then where its next point goes.
         self.counts.resize(found.planes.len() + 1, 0);
         lattice().for_each(|(_, _, label)| self.counts[usize::from(label)] += 1);
         for track in 0..tracks {
             let start = points.len();
+            let mut pixels = (STEP * STEP) as u32;
             match (label_of(track), old_of(track)) {
+                (Some(label), _) if is_small(label) => {
+                    pixels = (FINE_STEP * FINE_STEP) as u32;
+                    points.extend(points_of(found, label));
+                }
                 (Some(label), _) => {
                     let count = std::mem::replace(&mut self.counts[usize::from(label)], start as u32);
                     points.resize(start + count as usize, [f32::NAN; 2]);
                 }
-                (None, Some(old)) => points.extend_from_slice(&self.points[self.ranges[old].clone()]),
+                (None, Some(old)) => {
+                    let old = &self.tracks[old];
+                    pixels = old.pixels;
+                    points.extend_from_slice(&self.points[old.range.clone()]);
+                }
                 (None, None) => (),
             }
-            ranges.push(start..points.len());
+            tracks_next.push(Points { range: start..points.len(), pixels });
         }
         for (u, v, label) in lattice() {
             let place = &mut self.counts[usize::from(label)];
-            if label != 0 {
-                points[*place as usize] = [u as f32, v as f32];
-                *place += 1;
-            }
+            points[*place as usize] = [u as f32, v as f32];
+            *place += 1;
         }
         self.counts.fill(0);
         std::mem::swap(&mut self.points, &mut self.next.0);
-        std::mem::swap(&mut self.ranges, &mut self.next.1);
+        std::mem::swap(&mut self.tracks, &mut self.next.1);
     }
+}
+
+/// The points of a small plane.
+fn points_of(found: &Detection, label: u16) -> impl Iterator<Item = [f32; 2]> {
+    let PixelBox { u_min, v_min, u_max, v_max } = found.planes[usize::from(label) - 1].bounding_box;
+    (v_min..=v_max).step_by(FINE_STEP).flat_map(move |v| {
+        let row = &found.labels[v as usize * found.width..][..found.width];
+        (u_min..=u_max).step_by(FINE_STEP).filter(move |&u| row[u as usize] == label).map(move |u| [u as f32, v as f32])
+    })
 }

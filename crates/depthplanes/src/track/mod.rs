@@ -43,8 +43,8 @@ use pose::Motion;
 /// Frames for which a plane that is not seen is kept if nothing else is stated: a second of most cameras, in which a person
 /// has walked by.
 pub const KEPT_FRAMES: u32 = 30;
-/// A plane is kept for no more than so many frames for each in which it was seen: what shows up once is mostly noise.
-const KEPT_PER_SEEN: u32 = 3;
+/// A plane is kept for no more than so many frames for each in which it was seen: what shows up once is often noise.
+const KEPT_PER_SEEN: u32 = 10;
 
 /// Follows planes from frame to frame, and reuses its memory.
 #[derive(Clone, Debug)]
