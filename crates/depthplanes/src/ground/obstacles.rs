@@ -67,7 +67,8 @@ impl Obstacles {
             let (column, row) = (at % columns, at / columns);
             let (is_left, is_right) = (column > 0, column + 1 < columns);
             let mut unite_with = |is_there: bool, back: usize| {
-                if is_there && is_connected(cells, at, at - back) {
+                // Mostly both are of one tree by their parents already.
+                if is_there && self.parents[at] != self.parents[at - back] && is_connected(cells, at, at - back) {
                     union_find::unite(&mut self.parents, at as u32, (at - back) as u32);
                 }
             };

@@ -5,11 +5,20 @@ use crate::camera::{HessianNormalForm, Intrinsics};
 use crate::detection::{Detection, PixelBox};
 use std::ops::Range;
 
-/// Pixels from one point of the lattice to the next, along both axes.
+/// Pixels from one point of a plane to the next along both axes, by the pixels of the plane: where a plane is takes about as
+/// many points to say, however large it is.
+fn step_of(pixels: usize) -> usize {
+    match pixels {
+        0..1024 => FINE,
+        1024..16_384 => STEP,
+        _ => 2 * STEP,
+    }
+}
+
+/// The step of small planes, whose points are looked for in their boxes.
+const FINE: usize = 2;
+/// The step of the lattice on which all others are looked for together.
 const STEP: usize = 4;
-/// The same for planes of fewer pixels than this: one point of 16 of them would say little of where they are.
-const FINE_STEP: usize = 2;
-const SMALL: usize = 1024;
 
 /// The points of a track: where they stand, and how many pixels each stands for.
 #[derive(Clone, Debug, Default)]
@@ -30,6 +39,8 @@ pub(super) struct Field {
     /// How many points of a track have each label; 0 beside those in `touched`.
     counts: Vec<u32>,
     touched: Vec<u16>,
+    /// The step of each label's points; 0 of none.
+    steps: Vec<usize>,
 }
 
 /// How many pixels of a track have a label now.
@@ -113,24 +124,31 @@ impl Field {
         let (points, tracks_next) = &mut self.next;
         points.clear();
         tracks_next.clear();
-        let is_small = |label: u16| label == 0 || found.planes[usize::from(label) - 1].pixel_count < SMALL;
+        let step_of =
+            |label: u16| usize::from(label).checked_sub(1).map_or(0, |at| step_of(found.planes[at].pixel_count));
+        self.steps.clear();
+        self.steps.extend((0..=found.planes.len()).map(|label| step_of(label as u16)));
+        let steps = &self.steps;
         let lattice = || {
             let rows = (STEP / 2..found.height).step_by(STEP);
             let points = rows.flat_map(|v| {
                 let row = &found.labels[v * found.width..(v + 1) * found.width];
                 (STEP / 2..found.width).step_by(STEP).map(move |u| (u, v, row[u]))
             });
-            points.filter(|&(_, _, label)| !is_small(label))
+            points.filter(|&(u, v, label)| match steps[usize::from(label)] {
+                STEP => true,
+                step => step > STEP && (u | v) & STEP == 0,
+            })
         };
         // First how many points each large plane has, then where its next point goes.
         self.counts.resize(found.planes.len() + 1, 0);
         lattice().for_each(|(_, _, label)| self.counts[usize::from(label)] += 1);
         for track in 0..tracks {
             let start = points.len();
-            let mut pixels = (STEP * STEP) as u32;
+            let step = label_of(track).map_or(0, |label| self.steps[usize::from(label)]);
+            let mut pixels = (step * step) as u32;
             match (label_of(track), old_of(track)) {
-                (Some(label), _) if is_small(label) => {
-                    pixels = (FINE_STEP * FINE_STEP) as u32;
+                (Some(label), _) if step == FINE => {
                     points.extend(points_of(found, label));
                 }
                 (Some(label), _) => {
@@ -160,8 +178,8 @@ impl Field {
 /// The points of a small plane.
 fn points_of(found: &Detection, label: u16) -> impl Iterator<Item = [f32; 2]> {
     let PixelBox { u_min, v_min, u_max, v_max } = found.planes[usize::from(label) - 1].bounding_box;
-    (v_min..=v_max).step_by(FINE_STEP).flat_map(move |v| {
+    (v_min..=v_max).step_by(FINE).flat_map(move |v| {
         let row = &found.labels[v as usize * found.width..][..found.width];
-        (u_min..=u_max).step_by(FINE_STEP).filter(move |&u| row[u as usize] == label).map(move |u| [u as f32, v as f32])
+        (u_min..=u_max).step_by(FINE).filter(move |&u| row[u as usize] == label).map(move |u| [u as f32, v as f32])
     })
 }
