@@ -1,0 +1,149 @@
+//! Which topic of a recording is the depth map's, and which one has its camera.
+//!
+//! What a topic has in it is known from its first message alone: the beginning of the file is looked through for that.
+
+use crate::error::{Error, Result};
+use crate::mcap::Reader;
+use crate::messages::{Content, depth_form, type_of};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// Bytes of a file that are looked through where its summary does not tell which topics it has.
+const MOST_LOOKED: u64 = 1 << 26;
+/// Topics in a message.
+const MOST_SAID: usize = 12;
+
+/// The topics that are read.
+#[derive(Clone, Debug)]
+pub(super) struct Choice {
+    pub(super) topic: String,
+    camera: Option<String>,
+}
+
+impl Choice {
+    pub(super) fn topics(&self) -> BTreeSet<String> {
+        [&self.topic].into_iter().chain(&self.camera).cloned().collect()
+    }
+}
+
+/// What the beginning of a recording has.
+#[derive(Default)]
+pub(super) struct Looked {
+    /// Topics with pictures; what is in them if it may be depth, and the frame of coordinates.
+    pictures: BTreeMap<String, (Option<String>, String)>,
+    /// Topics with cameras, with the frame of coordinates, and the camera.
+    cameras: BTreeMap<String, (String, String)>,
+    /// All topics, with the type of each.
+    all: BTreeMap<String, String>,
+    fault: Option<Error>,
+}
+
+/// Looks at the first message of each topic.
+pub(super) fn look(reader: &mut Reader) -> Looked {
+    let mut looked = Looked::default();
+    while reader.bytes_read < MOST_LOOKED && looked.misses(reader) {
+        let message = match reader.next() {
+            Some(Ok(message)) => message,
+            Some(Err(error)) => {
+                looked.fault = Some(error);
+                break;
+            }
+            None => break,
+        };
+        let Some(channel) = reader.channel(message.channel) else { continue };
+        let Some(row) = type_of(&channel.schema, &channel.encoding) else { continue };
+        let topic = channel.topic.clone();
+        if looked.knows(&topic) {
+            continue;
+        }
+        match (row.read)(message.data()) {
+            Ok(read) => match read.content {
+                Content::Camera(text) => _ = looked.cameras.insert(topic, (read.frame_id, text)),
+                content => _ = looked.pictures.insert(topic, (depth_form(&content), read.frame_id)),
+            },
+            Err(_) => _ = looked.pictures.insert(topic, (None, String::new())),
+        }
+    }
+    let of_channel = |(_, channel): (u16, &crate::mcap::Channel)| {
+        (channel.topic.clone(), format!("{} in {}", channel.schema, channel.encoding))
+    };
+    looked.all = reader.channels().map(of_channel).collect();
+    looked
+}
+
+impl Looked {
+    fn knows(&self, topic: &str) -> bool {
+        self.pictures.contains_key(topic) || self.cameras.contains_key(topic)
+    }
+
+    /// Whether there may be a topic of which nothing was seen yet.
+    fn misses(&self, reader: &Reader) -> bool {
+        let may = |(_, channel): (u16, &crate::mcap::Channel)| {
+            let is_read = type_of(&channel.schema, &channel.encoding).is_some();
+            is_read && !self.knows(&channel.topic) && reader.count(&channel.topic) != Some(0)
+        };
+        !reader.has_summary() || reader.channels().any(may)
+    }
+
+    /// The topic that is stated, or else the one with depth; and the one with its camera.
+    ///
+    /// # Errors
+    /// [`Error::Source`] with the topics there are, or what is wrong with the file.
+    pub(super) fn choose(&mut self, stated: Option<&str>, path: &Path) -> Result<Choice> {
+        let refused = |wrong: String, accepted: String| Err(Error::source(path.display(), wrong, accepted));
+        let depth: Vec<String> =
+            self.pictures.iter().filter(|(_, (depth, _))| depth.is_some()).map(|(topic, _)| topic.clone()).collect();
+        let topic = match (stated, &depth[..]) {
+            (Some(topic), _) if self.pictures.contains_key(topic) => topic.to_string(),
+            (Some(topic), _) => return refused(format!("no pictures in a topic {topic}"), self.accepted(path)),
+            (None, [topic]) => topic.clone(),
+            (None, []) => match self.fault.take() {
+                Some(fault) => return Err(fault),
+                None => return refused("no depth in it".into(), self.accepted(path)),
+            },
+            (None, several) => return refused(format!("{} topics have depth", several.len()), self.accepted(path)),
+        };
+        let camera = self.camera_beside(&topic);
+        Ok(Choice { topic, camera })
+    }
+
+    /// The topics with depth, ready to type, or all topics where there are none.
+    fn accepted(&self, path: &Path) -> String {
+        let depth = self.pictures.iter().filter_map(|(topic, (depth, _))| Some((topic, depth.as_ref()?)));
+        let depth: Vec<String> =
+            depth.take(MOST_SAID).map(|(topic, form)| format!("{}:{topic} ({form})", path.display())).collect();
+        if !depth.is_empty() {
+            return depth.join(", ");
+        }
+        let all: Vec<String> =
+            self.all.iter().take(MOST_SAID).map(|(topic, kind)| format!("{topic} ({kind})")).collect();
+        let all = if all.is_empty() { "none".to_string() } else { all.join(", ") };
+        format!(
+            "a topic with 16UC1, mono16, 32FC1 or compressedDepth in ROS 2's Image or CompressedImage, or in foxglove.RawImage; its \
+             topics are {all}"
+        )
+    }
+
+    /// The topic with the camera of a topic's pictures: the one beside it, or else the only one in its frame of coordinates.
+    fn camera_beside(&self, topic: &str) -> Option<String> {
+        let base = ["/compressedDepth", "/compressed"].iter().find_map(|transport| topic.strip_suffix(transport));
+        let folder = |topic: &str| topic.rsplit_once('/').map_or(String::new(), |(folder, _)| folder.to_string());
+        let beside = folder(base.unwrap_or(topic));
+        let mut cameras = self.cameras.keys().filter(|camera| folder(camera) == beside);
+        let named = cameras.clone().find(|camera| camera.ends_with("/camera_info"));
+        if let Some(camera) = named.or_else(|| cameras.next()) {
+            return Some(camera.clone());
+        }
+        let (_, frame_id) = self.pictures.get(topic)?;
+        let mut same = self.cameras.iter().filter(|(_, (camera, _))| !camera.is_empty() && camera == frame_id);
+        match (same.next(), same.next()) {
+            (Some((camera, _)), None) => Some(camera.clone()),
+            _ => None,
+        }
+    }
+
+    /// The camera of a choice, in JSON.
+    pub(super) fn camera_of(&self, choice: &Choice) -> Option<String> {
+        Some(self.cameras.get(choice.camera.as_ref()?)?.1.clone())
+    }
+}
