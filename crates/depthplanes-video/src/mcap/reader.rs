@@ -71,7 +71,8 @@ pub(crate) struct Reader {
     held: BTreeMap<usize, (usize, usize)>,
     /// Messages before this one are left out.
     from: (u64, usize, u64),
-    fault: Option<Error>,
+    /// The first place of the file where something is wrong: parts behind it are left out.
+    fault: Option<(u64, Error)>,
     is_over: bool,
     /// Bytes of all parts so far.
     pub(crate) bytes_read: u64,
@@ -137,8 +138,11 @@ impl Reader {
     /// The next message; an error is the last that comes.
     pub(crate) fn next(&mut self) -> Option<Result<Message>> {
         while self.wants_a_part() {
-            if let Err(error) = self.open_part() {
-                self.fault = Some(error);
+            let at = self.layout.parts[self.next].at;
+            if self.fault.as_ref().is_some_and(|(fault, _)| at > *fault) {
+                self.next += 1;
+            } else if let Err(error) = self.open_part() {
+                self.fault = Some((at, error));
             }
         }
         if let Some(Reverse(message)) = self.waiting.pop() {
@@ -149,7 +153,7 @@ impl Reader {
             return None;
         }
         let behind = self.layout.fault.as_ref().map(|(at, wrong)| self.input.fault(*at, wrong));
-        self.fault.take().or(behind).map(Err)
+        self.fault.take().map(|(_, error)| error).or(behind).map(Err)
     }
 
     /// Whether the next part may have a message before all that wait.
@@ -157,7 +161,7 @@ impl Reader {
         let Some(part) = self.layout.parts.get(self.next) else { return false };
         let held: usize = self.held.values().map(|(bytes, _)| bytes).sum();
         let may = |Reverse(first): &Reverse<Message>| part.start <= first.log_time && held < MOST_HELD;
-        self.fault.is_none() && !self.is_over && self.waiting.peek().is_none_or(may)
+        !self.is_over && self.waiting.peek().is_none_or(may)
     }
 
     fn is_wanted(&self, channel: u16) -> bool {

@@ -90,8 +90,10 @@ impl Recording {
         let row = type_of(&channel.schema, &channel.encoding)?;
         let read = (row.read)(message.data());
         if row.is_camera {
-            if let Ok(crate::messages::Message { content: Content::Camera(text), .. }) = read {
-                self.take_camera(text);
+            match read.map(|read| read.content) {
+                Ok(Content::Camera(text)) => self.take_camera(text),
+                Ok(_) => (),
+                Err(wrong) => self.camera = Some((String::new(), Err(wrong))),
             }
             return None;
         }

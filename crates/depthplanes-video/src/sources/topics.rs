@@ -10,6 +10,8 @@ use std::path::Path;
 
 /// Bytes of a file that are looked through where its summary does not tell which topics it has.
 const MOST_LOOKED: u64 = 1 << 26;
+/// Topics of our own, whose label images are no depth.
+const OURS: &str = "/depthplanes/";
 /// Topics in a message.
 const MOST_SAID: usize = 12;
 
@@ -91,8 +93,7 @@ impl Looked {
     /// [`Error::Source`] with the topics there are, or what is wrong with the file.
     pub(super) fn choose(&mut self, stated: Option<&str>, path: &Path) -> Result<Choice> {
         let refused = |wrong: String, accepted: String| Err(Error::source(path.display(), wrong, accepted));
-        let depth: Vec<String> =
-            self.pictures.iter().filter(|(_, (depth, _))| depth.is_some()).map(|(topic, _)| topic.clone()).collect();
+        let depth: Vec<String> = self.depth().into_iter().map(|(topic, _)| topic.clone()).collect();
         let topic = match (stated, &depth[..]) {
             (Some(topic), _) if self.pictures.contains_key(topic) => topic.to_string(),
             (Some(topic), _) => return refused(format!("no pictures in a topic {topic}"), self.accepted(path)),
@@ -107,11 +108,20 @@ impl Looked {
         Ok(Choice { topic, camera })
     }
 
+    /// The topics with depth and what it is in; 16 bits of grey are depth where there is nothing else.
+    fn depth(&self) -> Vec<(&String, &String)> {
+        let with_form = self.pictures.iter().filter_map(|(topic, (form, _))| Some((topic, form.as_ref()?)));
+        let mut depth: Vec<_> = with_form.filter(|(topic, _)| !topic.starts_with(OURS)).collect();
+        if depth.iter().any(|(_, form)| *form != "mono16") {
+            depth.retain(|(_, form)| *form != "mono16");
+        }
+        depth
+    }
+
     /// The topics with depth, ready to type, or all topics where there are none.
     fn accepted(&self, path: &Path) -> String {
-        let depth = self.pictures.iter().filter_map(|(topic, (depth, _))| Some((topic, depth.as_ref()?)));
-        let depth: Vec<String> =
-            depth.take(MOST_SAID).map(|(topic, form)| format!("{}:{topic} ({form})", path.display())).collect();
+        let typed = |(topic, form): (&String, &String)| format!("{}:{topic} ({form})", path.display());
+        let depth: Vec<String> = self.depth().into_iter().take(MOST_SAID).map(typed).collect();
         if !depth.is_empty() {
             return depth.join(", ");
         }
