@@ -53,7 +53,7 @@ fn what_ends_the_program_leaves_whole_chunks() {
     let mut child = bench.command().args(words).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     let (start, path) = (Instant::now(), bench.folder.join("t.mcap"));
     let length = || std::fs::metadata(&path).map_or(0, |file| file.len());
-    while length() < 200_000 && start.elapsed() < Duration::from_secs(60) {
+    while length() < 500_000 && start.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(2));
     }
     child.kill().unwrap(); // SIGKILL

@@ -18,7 +18,9 @@ pub(super) struct Content {
 /// Takes the content of a chunk's record apart. `most`: bytes of the records.
 pub(super) fn unpack(bytes: Vec<u8>, most: usize) -> Content {
     let none = |fault: String| Content { bytes: Vec::new(), from: 0, fault: Some(fault) };
-    let Some(head) = head(&bytes) else { return none("a chunk whose beginning is not whole; was the recorder killed?".into()) };
+    let Some(head) = head(&bytes) else {
+        return none("a chunk whose beginning is not whole; was the recorder killed?".into());
+    };
     if head.size > most as u64 {
         return none(format!("a chunk of {} bytes, the limit is {most}", head.size));
     }

@@ -3,8 +3,8 @@
 //! A file is a row of records. Messages stand in chunks, which are compressed, or by themselves; a summary at the end says
 //! where the chunks are. Where there is none, since the recorder was killed, the records are gone over once instead.
 //!
-//! This is own code and not the crate `mcap`, which needs crates that nobody keeps up (`paste`), decompresses by
-//! programs in C, which the static program does without, and trusts more of a file than is done here.
+//! This is own code and not the crate `mcap`, which needs `paste`, a crate that nobody keeps up, and brings 16 more.
+//! Chunks are unpacked by `ruzstd` and `lz4_flex`, which are Rust alone, so that the static program needs no compiler of C.
 
 mod chunk;
 mod input;

@@ -201,7 +201,8 @@ impl Reader {
         if count > 0 {
             self.held.insert(number, (bytes.len(), count));
         }
-        let odd = || (end < bytes.len()).then(|| format!("a record that ends behind its chunk, {} bytes in", end - from));
+        let odd =
+            || (end < bytes.len()).then(|| format!("a record that ends behind its chunk, {} bytes in", end - from));
         fault.or_else(odd).map_or(Ok(()), |fault| Err(self.input.fault(part.at, fault)))
     }
 
@@ -217,9 +218,7 @@ impl Reader {
         let head = self.input.read(part.at, HEAD)?;
         let mut fields = records::Fields(&head);
         match (fields.u8(), fields.u64()) {
-            (Some(op::CHUNK), Some(_)) => {
-                Ok(unpack(self.input.read(part.at + HEAD, part.length - HEAD)?, self.most))
-            }
+            (Some(op::CHUNK), Some(_)) => Ok(unpack(self.input.read(part.at + HEAD, part.length - HEAD)?, self.most)),
             _ => Err(self.input.fault(part.at, "no chunk, though the summary says so")),
         }
     }

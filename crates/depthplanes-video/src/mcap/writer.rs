@@ -65,15 +65,8 @@ impl<W: Write> Writer<W> {
         record(&mut start, op::HEADER, &[text(""), text("depthplanes")].concat());
         start.extend(&known);
         let counts = vec![0; topics.len()];
-        let mut writer = Writer {
-            out,
-            at: 0,
-            topics: known,
-            chunks: Vec::new(),
-            chunk_count: 0,
-            counts,
-            times: [u64::MAX, 0],
-        };
+        let mut writer =
+            Writer { out, at: 0, topics: known, chunks: Vec::new(), chunk_count: 0, counts, times: [u64::MAX, 0] };
         writer.write(&start)?;
         Ok(writer)
     }
@@ -160,9 +153,9 @@ impl<W: Write> Writer<W> {
     fn statistics(&self) -> Vec<u8> {
         let topics = self.counts.len();
         let [start, end] = if self.chunk_count == 0 { [0; 2] } else { self.times };
-        let counts = (0u16..).zip(&self.counts).flat_map(|(id, count)| {
-            id.to_le_bytes().into_iter().chain(count.to_le_bytes()).collect::<Vec<u8>>()
-        });
+        let counts = (0u16..)
+            .zip(&self.counts)
+            .flat_map(|(id, count)| id.to_le_bytes().into_iter().chain(count.to_le_bytes()).collect::<Vec<u8>>());
         [
             &self.counts.iter().sum::<u64>().to_le_bytes()[..],
             &(topics as u16).to_le_bytes(),

@@ -26,7 +26,8 @@ impl<'a> Cdr<'a> {
     fn take(&mut self, count: usize, align: usize) -> Result<&'a [u8], String> {
         let at = self.at.next_multiple_of(align.min(self.widest));
         let taken = at.checked_add(count).and_then(|end| self.bytes.get(at..end));
-        let taken = taken.ok_or_else(|| format!("{count} bytes are needed, {} are left", self.bytes.len().saturating_sub(at)))?;
+        let taken = taken
+            .ok_or_else(|| format!("{count} bytes are needed, {} are left", self.bytes.len().saturating_sub(at)))?;
         self.at = at + count;
         Ok(taken)
     }

@@ -1,6 +1,5 @@
 //! Foxglove's messages in JSON, bytes in base64.
 
-
 use super::content::{CameraNumbers, Content, Message, seconds};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

@@ -18,13 +18,8 @@ struct Form {
     is_depth: bool,
 }
 
-const U16: Form = Form {
-    name: "16UC1",
-    samples: ["uint16", "uint16-be"],
-    bytes: 2,
-    encoding: Some("millimetre"),
-    is_depth: true,
-};
+const U16: Form =
+    Form { name: "16UC1", samples: ["uint16", "uint16-be"], bytes: 2, encoding: Some("millimetre"), is_depth: true };
 
 /// Encodings of raw pictures (REP 118 for the first and the third).
 const FORMS: [Form; 5] = [
@@ -103,6 +98,7 @@ fn rows(data: &[u8], width: u32, height: u32, step: u32, bytes: u32) -> std::res
     if step == row {
         return Ok(data[..(row * height) as usize].into());
     }
-    let rows: Vec<&[u8]> = data.chunks(step as usize).take(height as usize).map(|bytes| &bytes[..row as usize]).collect();
+    let rows: Vec<&[u8]> =
+        data.chunks(step as usize).take(height as usize).map(|bytes| &bytes[..row as usize]).collect();
     Ok(rows.concat().into())
 }

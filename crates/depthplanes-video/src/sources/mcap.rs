@@ -30,6 +30,8 @@ pub(super) fn is_mcap(path: &Path) -> bool {
 #[derive(Debug)]
 pub(super) struct Recording {
     files: Vec<PathBuf>,
+    /// Frames of each file, if its summary says it.
+    counts: Vec<Option<u64>>,
     /// The file that is read, and how many of its frames came so far.
     at: usize,
     of_file: u64,
@@ -51,8 +53,13 @@ impl Recording {
         let mut reader = Reader::open(&files[0], options.read.decode.limits.max_bytes)?;
         let mut looked = topics::look(&mut reader);
         let choice = looked.choose(topic, &files[0])?;
+        let most = options.read.decode.limits.max_bytes;
+        // What is wrong with a further file is said when it is its turn.
+        let further = files[1..].iter().map(|file| Reader::open(file, most).ok()?.count(&choice.topic));
+        let counts = [reader.count(&choice.topic)].into_iter().chain(further).collect();
         let mut recording = Recording {
             files,
+            counts,
             at: 0,
             of_file: 0,
             reader,
@@ -126,7 +133,7 @@ impl Recording {
 
     /// What is wrong with a file that came to its end with fewer or more frames than its summary says.
     fn lacks(&self) -> Option<Error> {
-        let stated = self.reader.count(&self.choice.topic).filter(|count| *count != self.of_file)?;
+        let stated = self.counts[self.at].filter(|count| *count != self.of_file)?;
         let wrong = format!("{} frames of {} that the summary tells of", self.of_file, stated);
         let accepted = "a whole MCAP file; `mcap recover FILE` writes what can be saved into another one";
         Some(Error::source(self.files[self.at].display(), wrong, accepted))
@@ -161,16 +168,21 @@ impl Source for Recording {
     }
 
     fn frames(&self) -> Option<u64> {
-        // Of several files the first alone is open.
-        if self.files.len() > 1 { None } else { self.reader.count(&self.choice.topic) }
+        self.counts.iter().copied().sum()
     }
 
     fn seek(&mut self, index: u64) -> bool {
-        if self.files.len() > 1 || !self.reader.seek(&self.choice.topic, index).unwrap_or(false) {
+        let Some(frames) = self.frames() else { return false };
+        let (mut file, mut of_file) = (0, index.min(frames));
+        while file + 1 < self.files.len() && of_file >= self.counts[file].unwrap_or(0) {
+            of_file -= self.counts[file].unwrap_or(0);
+            file += 1;
+        }
+        let is_there = file == self.at || self.go_to(file).is_ok();
+        if !is_there || !self.reader.seek(&self.choice.topic, of_file).unwrap_or(false) {
             return false;
         }
-        let frames = self.reader.count(&self.choice.topic).unwrap_or(index);
-        (self.next, self.of_file, self.is_over) = (index.min(frames), index.min(frames), false);
+        (self.next, self.of_file, self.is_over) = (index.min(frames), of_file, false);
         true
     }
 }

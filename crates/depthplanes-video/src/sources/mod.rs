@@ -14,15 +14,8 @@ use crate::error::{Error, Result};
 use crate::source::{Source, SourceInfo, SourceOptions};
 
 /// All sources; the first that takes a word opens it.
-pub const SOURCES: &[SourceInfo] = &[
-    scene::SCENE,
-    raw::RAW,
-    mcap::MCAP,
-    rosbag2::ROSBAG2,
-    tum::TUM,
-    seven_scenes::SEVEN_SCENES,
-    folder::FOLDER,
-];
+pub const SOURCES: &[SourceInfo] =
+    &[scene::SCENE, raw::RAW, mcap::MCAP, rosbag2::ROSBAG2, tum::TUM, seven_scenes::SEVEN_SCENES, folder::FOLDER];
 
 /// Opens the source that a word stands for: a folder, a recording, `-` for raw frames on standard
 /// input, `scene:SPEC`.

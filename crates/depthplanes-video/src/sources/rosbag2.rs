@@ -26,7 +26,8 @@ fn is_sqlite(path: &Path) -> bool {
 fn is_bag(path: &Path) -> bool {
     let of_bag = |name: &String| is_mcap(Path::new(name)) || is_sqlite(Path::new(name));
     path.is_file() && is_sqlite(path)
-        || path.is_dir() && (is_metadata(&path.join(METADATA)) || names_in(path).is_ok_and(|names| names.iter().any(of_bag)))
+        || path.is_dir()
+            && (is_metadata(&path.join(METADATA)) || names_in(path).is_ok_and(|names| names.iter().any(of_bag)))
 }
 
 const METADATA: &str = "metadata.yaml";
@@ -41,7 +42,11 @@ fn open(folder: &Path, topic: Option<&str>, options: &SourceOptions) -> Result<B
     let files = match files {
         Some(files) => files,
         None if folder.is_file() => vec![folder.into()],
-        None => names_in(folder)?.into_iter().filter(|name| !name.ends_with(".yaml")).map(|name| folder.join(name)).collect(),
+        None => names_in(folder)?
+            .into_iter()
+            .filter(|name| !name.ends_with(".yaml"))
+            .map(|name| folder.join(name))
+            .collect(),
     };
     let files: Vec<PathBuf> = files.into_iter().filter(|file| is_mcap(file) || is_sqlite(file)).collect();
     if files.iter().any(|file| is_sqlite(file)) {
