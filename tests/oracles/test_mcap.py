@@ -9,6 +9,7 @@ import cv2
 import jsonschema
 import numpy as np
 import pytest
+import shapely
 from foxglove_schemas_protobuf.CameraCalibration_pb2 import CameraCalibration
 from foxglove_schemas_protobuf.FrameTransform_pb2 import FrameTransform
 from foxglove_schemas_protobuf.RawImage_pb2 import RawImage
@@ -159,6 +160,33 @@ def test_a_camera_is_that_beside_its_topic_with_binning_and_region(track, tmp_pa
     assert_same(track(path), track(folder, *FLAGS))
 
 
+def test_a_camera_elsewhere_is_taken_by_its_frame_of_coordinates(track, tmp_path, folder):
+    path = tmp_path / "walk.mcap"
+    messages = [("/static/camera", CAMERA_INFO, camera_info(WIDTH, HEIGHT, *CAMERA, START_NS), START_NS)]
+    messages += [(DEPTH, IMAGE, image(values, "16UC1", time), time) for time, values in zip(times(), frames())]
+    write_ros2(path, messages)
+    assert_same(track(path), track(folder, *FLAGS))
+
+
+@pytest.mark.parametrize("compression", ["none", "lz4", "zstd"])
+def test_a_file_that_is_cut_off_gives_its_whole_messages(track, tmp_path, compression):
+    path = tmp_path / "walk.mcap"
+    messages = [(DEPTH, IMAGE, image(values, "16UC1", time), time) for time, values in zip(times(8), frames(8))]
+    write_ros2(path, with_camera(messages), compression, chunk_size=50_000)
+    whole, _, _ = track(path)
+    bytes_of_file, seen = path.read_bytes(), set()
+    for share in (0.35, 0.55, 0.75, 0.95):
+        path.write_bytes(bytes_of_file[:int(share * len(bytes_of_file))])
+        lines, _, done = track(path, check=False)
+        assert done.returncode == 2 and "error" in lines[-1] and "the file ends" in lines[-1]["error"], lines[-1]
+        good = lines[:-1]
+        assert [line["planes"] for line in good] == [line["planes"] for line in whole[:len(good)]]
+        # A summary and what is not packed yet are small: frames are spread evenly over the file.
+        assert len(good) >= int(8 * share) - 2
+        seen.add(len(good))
+    assert len(seen) >= 3
+
+
 @pytest.mark.parametrize("encoding", ["protobuf", "json"])
 def test_foxgloves_images_are_those_of_the_folder(track, tmp_path, folder, encoding):
     import base64
@@ -289,11 +317,25 @@ def test_what_is_recorded_is_what_was_found(recorded):
         assert np.allclose([getattr(message.translation, axis) for axis in "xyz"], line["pose"]["translation_m"])
 
 
+def overlap(entity, camera, mask):
+    """Intersection over union of a plane's outline, as the camera sees it, and its pixels."""
+    fx, _, cx, _, fy, cy, *_ = camera.K
+    rings = [[(fx * point.x / point.z + cx, fy * point.y / point.z + cy) for point in line.points] for line in entity.lines]
+    shape = shapely.Polygon()
+    for ring in rings:  # holes are taken out
+        shape = shape.symmetric_difference(shapely.Polygon(ring).buffer(0))
+    v, u = np.mgrid[0:mask.shape[0], 0:mask.shape[1]]
+    inside = shapely.contains_xy(shape, u, v)
+    return (inside & mask).sum() / (inside | mask).sum()
+
+
 def test_the_scene_is_the_planes_outlines_and_what_is_gone_is_deleted(recorded):
     path, lines, labels = recorded
     shown, deleted = set(), 0
     with open(path, "rb") as file:
-        scenes = [message for topic, _, message, _ in messages_of(file) if topic == "/depthplanes/scene"]
+        messages = [(topic, message) for topic, _, message, _ in messages_of(file)]
+    scenes = [message for topic, message in messages if topic == "/depthplanes/scene"]
+    camera = next(message for topic, message in messages if topic == "/depthplanes/camera")
     for scene, line, image in zip(scenes, lines, labels):
         shown -= {deletion.id for deletion in scene.deletions}
         deleted += len(scene.deletions)
@@ -307,6 +349,8 @@ def test_the_scene_is_the_planes_outlines_and_what_is_gone_is_deleted(recorded):
             # Corners lie on the plane of this frame, which the filtered one is near.
             off = points @ np.array(plane["normal"]) + plane["distance_m"]
             assert min(np.abs(off).max(), np.abs(off - 2 * plane["distance_m"]).max()) < 0.05 * points[:, 2].max()
+            if plane["pixel_count"] >= 1000:
+                assert overlap(entity, camera, image == plane["id"]) > (0.85 if plane["pixel_count"] < 5000 else 0.95)
             assert entity.texts[0].text == entity.id and entity.frame_id == "camera"
             place = entity.texts[0].pose.position
             assert np.allclose([place.x, place.y, place.z], plane["centroid_m"])

@@ -3,8 +3,12 @@
 //! Of a chunk that is cut off there are the records before the cut; one whose checksum is wrong has none.
 
 use super::records::Fields;
-use std::borrow::Cow;
+use crate::error::short;
+use ruzstd::decoding::StreamingDecoder;
 use std::io::Read;
+
+/// Bytes that zstd may look back, if the chunk has no more: those of its highest ordinary level.
+const WINDOW: u64 = 1 << 23;
 
 /// The records of a chunk, and what is wrong with it.
 pub(super) struct Content {
@@ -26,14 +30,17 @@ pub(super) fn unpack(bytes: Vec<u8>, most: usize) -> Content {
     }
     let cut = (head.missing > 0).then(|| format!("the file ends {} bytes before the end of this chunk", head.missing));
     let packed = &bytes[head.from..head.end];
-    let reader: Box<dyn Read + '_> = match &*head.compression {
+    let reader: Box<dyn Read + '_> = match &head.compression[..] {
         "" => return checked(head.from, head.end, head.size, head.crc, cut, bytes),
         "lz4" => Box::new(lz4_flex::frame::FrameDecoder::new(packed)),
-        "zstd" => match ruzstd::decoding::StreamingDecoder::new(packed) {
+        "zstd" => match StreamingDecoder::new_with_max_window_size(packed, head.size.max(WINDOW)) {
             Ok(decoder) => Box::new(decoder),
             Err(error) => return none(cut.unwrap_or_else(|| format!("a chunk that is no zstd: {error}"))),
         },
-        other => return none(format!("a chunk with the compression `{other}`; zstd, lz4 and none are known")),
+        other => {
+            let other = short(other);
+            return none(format!("a chunk with the compression `{other}`; zstd, lz4 and none are known"));
+        }
     };
     let mut records = Vec::with_capacity(head.size.min(16 * packed.len() as u64) as usize);
     // One byte more shows that there are too many.
@@ -46,7 +53,7 @@ pub(super) fn unpack(bytes: Vec<u8>, most: usize) -> Content {
 struct Head {
     size: u64,
     crc: u32,
-    compression: Cow<'static, str>,
+    compression: String,
     /// Where the packed records begin and end.
     from: usize,
     end: usize,
@@ -58,10 +65,7 @@ fn head(bytes: &[u8]) -> Option<Head> {
     let mut fields = Fields(bytes);
     fields.take(8 + 8)?;
     let (size, crc) = (fields.u64()?, fields.u32()?);
-    let compression = match fields.text()? {
-        "" => "".into(),
-        other => other.to_string().into(),
-    };
+    let compression = fields.text()?.to_string();
     let packed = fields.u64()?;
     let (from, there) = (bytes.len() - fields.0.len(), fields.0.len() as u64);
     Some(Head {

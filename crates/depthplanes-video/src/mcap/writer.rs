@@ -2,6 +2,7 @@
 
 use super::records::{HEAD, MAGIC, op};
 use lz4_flex::frame::FrameEncoder;
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 /// What a topic is.
@@ -77,8 +78,7 @@ impl<W: Write> Writer<W> {
         self.out.flush()
     }
 
-    /// Writes messages as one chunk: the topic of each, counted from 0, its log time in nanoseconds, and its bytes. A topic
-    /// has one message in a chunk at the most.
+    /// Writes messages as one chunk: the topic of each, counted from 0, its log time in nanoseconds, and its bytes.
     ///
     /// # Errors
     /// Those of `out`.
@@ -86,11 +86,13 @@ impl<W: Write> Writer<W> {
     /// # Panics
     /// For a topic that there is not.
     pub fn chunk(&mut self, messages: &[(u16, u64, &[u8])]) -> io::Result<()> {
-        let (mut records, mut indexes, mut places) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut records, mut indexes) = (Vec::new(), Vec::new());
+        let mut places: BTreeMap<u16, Vec<u8>> = BTreeMap::new();
         for &(topic, time, data) in messages {
             let count = &mut self.counts[usize::from(topic)];
             *count += 1;
-            places.push((topic, time, records.len() as u64));
+            let place = [time.to_le_bytes(), (records.len() as u64).to_le_bytes()].concat();
+            places.entry(topic).or_default().extend(place);
             let numbers = [&topic.to_le_bytes()[..], &(*count as u32).to_le_bytes(), &time.to_le_bytes()].concat();
             head(&mut records, op::MESSAGE, numbers.len() + 8 + data.len());
             records.extend(numbers);
@@ -111,11 +113,10 @@ impl<W: Write> Writer<W> {
         written.extend(sizes[1].to_le_bytes());
         written.extend(&packed);
         let length = written.len() as u64;
-        for (topic, time, place) in places {
+        for (topic, places) in places {
             indexes.extend(topic.to_le_bytes());
             indexes.extend((self.at + written.len() as u64).to_le_bytes());
-            let entry = [time.to_le_bytes(), place.to_le_bytes()].concat();
-            record(&mut written, op::MESSAGE_INDEX, &[&topic.to_le_bytes()[..], &bytes(&entry)].concat());
+            record(&mut written, op::MESSAGE_INDEX, &[&topic.to_le_bytes()[..], &bytes(&places)].concat());
         }
         let mut index = Vec::new();
         [start, end, self.at, length].iter().for_each(|number| index.extend(number.to_le_bytes()));

@@ -1,7 +1,7 @@
 //! A picture of a message becomes a frame.
 
 use super::content::Content;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, short};
 use depthplanes_io::{Frame, ReadOptions, decode};
 use std::borrow::Cow;
 
@@ -60,7 +60,7 @@ pub(crate) fn frame(content: &Content<'_>, name: &str, options: &ReadOptions) ->
         Content::Raw { width, height, step, encoding, is_big_endian, data } => {
             let form = FORMS.iter().find(|form| form.name == encoding).ok_or_else(|| {
                 let names: Vec<_> = FORMS.iter().map(|form| form.name).collect();
-                Error::source(name, format!("a picture in `{encoding}`"), names.join(", "))
+                Error::source(name, format!("a picture in `{}`", short(encoding)), names.join(", "))
             })?;
             state(form.encoding);
             options.decode.raw_size = Some((*width as usize, *height as usize));

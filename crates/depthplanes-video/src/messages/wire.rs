@@ -1,7 +1,7 @@
 //! Protobuf's wire format (<https://protobuf.dev/programming-guides/encoding>): the fields of a message.
 
 /// The value of a field.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub(super) enum Wire<'a> {
     Number(u64),
     Fixed64([u8; 8]),
@@ -10,10 +10,21 @@ pub(super) enum Wire<'a> {
 }
 
 impl<'a> Wire<'a> {
+    /// What is wrong with a field that should be something else.
+    fn not<T>(self, wanted: &str) -> Result<T, String> {
+        let what = match self {
+            Wire::Number(_) => "a number",
+            Wire::Fixed64(_) => "64 bits",
+            Wire::Bytes(_) => "bytes",
+            Wire::Fixed32(_) => "32 bits",
+        };
+        Err(format!("{what} in the place of {wanted}"))
+    }
+
     pub(super) fn bytes(self) -> Result<&'a [u8], String> {
         match self {
             Wire::Bytes(bytes) => Ok(bytes),
-            other => Err(format!("{other:?} where bytes should be")),
+            other => other.not("bytes"),
         }
     }
 
@@ -27,14 +38,14 @@ impl<'a> Wire<'a> {
         match self {
             Wire::Fixed32(bytes) => Ok(u32::from_le_bytes(bytes)),
             Wire::Number(number) => u32::try_from(number).map_err(|_| format!("{number} where 32 bits should be")),
-            other => Err(format!("{other:?} where a number should be")),
+            other => other.not("a number"),
         }
     }
 
     pub(super) fn number(self) -> Result<u64, String> {
         match self {
             Wire::Number(number) => Ok(number),
-            other => Err(format!("{other:?} where a number should be")),
+            other => other.not("a number"),
         }
     }
 
@@ -45,7 +56,7 @@ impl<'a> Wire<'a> {
             Wire::Bytes(bytes) if bytes.len() % 8 == 0 => {
                 all.extend(bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes)));
             }
-            other => return Err(format!("{other:?} where numbers should be")),
+            other => return other.not("numbers"),
         }
         Ok(())
     }

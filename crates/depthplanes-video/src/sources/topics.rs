@@ -2,7 +2,7 @@
 //!
 //! What a topic has in it is known from its first message alone: the beginning of the file is looked through for that.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, short};
 use crate::mcap::Reader;
 use crate::messages::{Content, depth_form, type_of};
 use std::collections::{BTreeMap, BTreeSet};
@@ -120,13 +120,17 @@ impl Looked {
 
     /// The topics with depth, ready to type, or all topics where there are none.
     fn accepted(&self, path: &Path) -> String {
-        let typed = |(topic, form): (&String, &String)| format!("{}:{topic} ({form})", path.display());
+        let typed = |(topic, form): (&String, &String)| format!("{}:{topic} ({})", path.display(), short(form));
         let depth: Vec<String> = self.depth().into_iter().take(MOST_SAID).map(typed).collect();
         if !depth.is_empty() {
             return depth.join(", ");
         }
-        let all: Vec<String> =
-            self.all.iter().take(MOST_SAID).map(|(topic, kind)| format!("{topic} ({kind})")).collect();
+        let all: Vec<String> = self
+            .all
+            .iter()
+            .take(MOST_SAID)
+            .map(|(topic, kind)| format!("{} ({})", short(topic), short(kind)))
+            .collect();
         let all = if all.is_empty() { "none".to_string() } else { all.join(", ") };
         format!(
             "a topic with 16UC1, mono16, 32FC1 or compressedDepth in ROS 2's Image or CompressedImage, or in foxglove.RawImage; its \

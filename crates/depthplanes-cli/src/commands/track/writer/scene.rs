@@ -90,7 +90,10 @@ fn entity(id: u32, outline: Outline<'_>, centroid_m: Option<[f64; 3]>, time_ns: 
 
 /// `foxglove.RawImage` of labels.
 pub(super) fn label_image(labels: &[u16], [width, height]: [usize; 2], time_ns: u64) -> Vec<u8> {
-    let bytes: Vec<u8> = labels.iter().flat_map(|label| label.to_le_bytes()).collect();
+    let mut bytes = vec![0; 2 * labels.len()];
+    for (pair, label) in bytes.as_chunks_mut::<2>().0.iter_mut().zip(labels) {
+        *pair = label.to_le_bytes();
+    }
     let image = Proto::default().message(1, stamp(time_ns)).fixed32(2, width as u32).fixed32(3, height as u32);
     image.text(4, "mono16").fixed32(5, 2 * width as u32).bytes(6, &bytes).text(7, CAMERA).into_bytes()
 }
