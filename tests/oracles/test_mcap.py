@@ -1,6 +1,7 @@
-"""Recordings that the packages mcap, mcap-ros2-support and mcap-protobuf-support write are read, and what `track` records is
-read by them."""
+"""Recordings that the packages mcap, mcap-ros2-support and mcap-protobuf-support write are read, and what `track` records
+is read by them."""
 
+import base64
 import io
 import json
 import subprocess
@@ -92,7 +93,7 @@ def assert_same(found, expected):
 
 
 def with_camera(messages):
-    return [(CAMERA_TOPIC, CAMERA_INFO, camera_info(WIDTH, HEIGHT, *CAMERA, time), time) for time in times()[:1]] + messages
+    return [(CAMERA_TOPIC, CAMERA_INFO, camera_info(WIDTH, HEIGHT, *CAMERA, START_NS), START_NS)] + messages
 
 
 @pytest.mark.parametrize("compression", ["none", "lz4", "zstd"])
@@ -145,16 +146,26 @@ def test_quantised_metres_are_undone_by_a_and_b(track, tmp_path, codec):
     assert wall["distance_m"] == pytest.approx(3.0, abs=0.02)
 
 
+def test_a_quantised_frame_with_nothing_in_it_is_no_error(track, tmp_path):
+    path = tmp_path / "walk.mcap"
+    _, a, b = quantised(np.ones((1, 1)))
+    data = payload(np.zeros((HEIGHT, WIDTH), np.uint16), "png", a, b)
+    message = {"header": recordings.stamp(START_NS), "format": "32FC1; compressedDepth png", "data": data}
+    write_ros2(path, with_camera([(DEPTH + "/compressedDepth", COMPRESSED, message, START_NS)]))
+    (line,), (labels,), _ = track(path)
+    assert line["planes"] == [] and not labels.any()
+
+
 def test_a_camera_is_that_beside_its_topic_with_binning_and_region(track, tmp_path, folder):
     """A camera of the whole sensor, of which the map is a binned region; another camera is in the file as well."""
     path = tmp_path / "walk.mcap"
     fx, fy, cx, cy = CAMERA
     info = camera_info(400, 300, 2 * fx, 2 * fy, 2 * cx + 40, 2 * cy + 20, START_NS, binning=2, roi=(40, 20, 320, 240))
     colour = camera_info(640, 480, 525.0, 525.0, 319.5, 239.5, START_NS)
-    rgb = {"header": recordings.stamp(START_NS, "colour"), "height": 2, "width": 2, "encoding": "rgb8", "is_bigendian": 0,
-           "step": 6, "data": bytes(12)}
-    messages = [("/camera/color/camera_info", CAMERA_INFO, colour, START_NS), (CAMERA_TOPIC, CAMERA_INFO, info, START_NS),
-                ("/camera/color/image_raw", IMAGE, rgb, START_NS)]
+    rgb = {"header": recordings.stamp(START_NS, "colour"), "height": 2, "width": 2, "encoding": "rgb8",
+           "is_bigendian": 0, "step": 6, "data": bytes(12)}
+    messages = [("/camera/color/camera_info", CAMERA_INFO, colour, START_NS),
+                (CAMERA_TOPIC, CAMERA_INFO, info, START_NS), ("/camera/color/image_raw", IMAGE, rgb, START_NS)]
     messages += [(DEPTH, IMAGE, image(values, "16UC1", time), time) for time, values in zip(times(), frames())]
     write_ros2(path, messages)
     assert_same(track(path), track(folder, *FLAGS))
@@ -189,7 +200,6 @@ def test_a_file_that_is_cut_off_gives_its_whole_messages(track, tmp_path, compre
 
 @pytest.mark.parametrize("encoding", ["protobuf", "json"])
 def test_foxgloves_images_are_those_of_the_folder(track, tmp_path, folder, encoding):
-    import base64
     path = tmp_path / "walk.mcap"
     fx, fy, cx, cy = CAMERA
     k = [fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0]
@@ -202,7 +212,8 @@ def test_foxgloves_images_are_those_of_the_folder(track, tmp_path, folder, encod
             writer = PlainWriter(file)
             writer.start()
             ids = []
-            for topic, name in [("/depth/image", "foxglove.RawImage"), ("/depth/calibration", "foxglove.CameraCalibration")]:
+            for topic, name in [("/depth/image", "foxglove.RawImage"),
+                                ("/depth/calibration", "foxglove.CameraCalibration")]:
                 schema = writer.register_schema(name, "jsonschema", b"{}")
                 ids.append(writer.register_channel(topic, "json", schema))
             calibration = {"frame_id": "depth", "width": WIDTH, "height": HEIGHT, "K": k, "D": [], "R": [], "P": []}
@@ -237,7 +248,8 @@ def test_a_bag_is_its_files_in_order_and_sqlite_is_refused(track, tmp_path, fold
     messages = [(DEPTH, IMAGE, image(values, "16UC1", time), time) for time, values in zip(times(), frames())]
     write_ros2(bag / "z.mcap", with_camera(messages[:2]))
     write_ros2(bag / "a.mcap", messages[2:])
-    metadata = "rosbag2_bagfile_information:\n  version: 9\n  storage_identifier: {}\n  relative_file_paths:\n{}  message_count: 5\n"
+    metadata = ("rosbag2_bagfile_information:\n  version: 9\n  storage_identifier: {}\n"
+                "  relative_file_paths:\n{}  message_count: 5\n")
     (bag / "metadata.yaml").write_text(metadata.format("mcap", "    - z.mcap\n    - a.mcap\n"))
     expected = track(folder, *FLAGS)
     assert_same(track(bag), expected)
@@ -320,9 +332,9 @@ def test_what_is_recorded_is_what_was_found(recorded):
 def overlap(entity, camera, mask):
     """Intersection over union of a plane's outline, as the camera sees it, and its pixels."""
     fx, _, cx, _, fy, cy, *_ = camera.K
-    rings = [[(fx * point.x / point.z + cx, fy * point.y / point.z + cy) for point in line.points] for line in entity.lines]
     shape = shapely.Polygon()
-    for ring in rings:  # holes are taken out
+    for line in entity.lines:  # holes are taken out
+        ring = [(fx * point.x / point.z + cx, fy * point.y / point.z + cy) for point in line.points]
         shape = shape.symmetric_difference(shapely.Polygon(ring).buffer(0))
     v, u = np.mgrid[0:mask.shape[0], 0:mask.shape[1]]
     inside = shapely.contains_xy(shape, u, v)
