@@ -282,7 +282,7 @@ def messages_of(stream):
     """Topic, schema and decoded message, by the package's own readers."""
     factory = DecoderFactory()
     decoders = {}
-    for schema, channel, message in NonSeekingReader(stream).iter_messages(log_time_order=False):
+    for schema, channel, message in NonSeekingReader(stream, validate_crcs=True).iter_messages(log_time_order=False):
         if schema.encoding == "jsonschema":
             yield channel.topic, schema, json.loads(message.data), message.log_time
         else:

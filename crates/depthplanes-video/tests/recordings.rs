@@ -4,6 +4,7 @@ use depthplanes_io::Pixels;
 use depthplanes_video::mcap::{Topic, Writer};
 use depthplanes_video::{Error, SourceOptions, VideoFrame, open};
 use proptest::prelude::*;
+use ruzstd::encoding::{CompressionLevel, compress_to_vec};
 use std::path::{Path, PathBuf};
 
 const SIZE: [u32; 2] = [8, 6];
@@ -50,6 +51,15 @@ fn topic(name: &'static str) -> Topic<'static> {
 
 const FRAMES: u16 = 6;
 
+/// Where records begin.
+fn heads(bytes: &[u8]) -> Vec<usize> {
+    let next = |at: &usize| {
+        let length = u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap());
+        Some(at + 9 + length as usize).filter(|at| *at < bytes.len() - 8)
+    };
+    std::iter::successors(Some(8), next).collect()
+}
+
 /// A recording of some frames, a second apart, a chunk for each; the bytes, and where each chunk ends.
 fn recording() -> (Vec<u8>, Vec<usize>) {
     let mut bytes = Vec::new();
@@ -62,23 +72,18 @@ fn recording() -> (Vec<u8>, Vec<usize>) {
         chunks.push(time);
     }
     writer.finish().unwrap();
-    // A chunk is record 6 and what is behind it is its index, record 7.
-    let mut at = 8;
-    while at < bytes.len() - 8 {
-        let length = u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize;
-        if bytes[at] == 6 {
-            ends.push(at + 9 + length);
-        }
-        at += 9 + length;
-    }
+    let heads = heads(&bytes);
+    // A chunk is record 6.
+    ends.extend(heads.windows(2).filter(|pair| bytes[pair[0]] == 6).map(|pair| pair[1]));
     assert_eq!(ends.len(), chunks.len());
     (bytes, ends)
 }
 
-/// The same messages without chunks and without a summary, as records one after the other; and where each ends.
-fn unchunked() -> (Vec<u8>, Vec<usize>) {
-    let (with_chunks, _) = recording();
-    let mut bytes = with_chunks[..8].to_vec();
+/// The same messages as records one after the other, without a summary: by themselves, or each in a chunk of that
+/// compression; and where each ends.
+fn records(compression: Option<&str>) -> (Vec<u8>, Vec<usize>) {
+    let (whole, _) = recording();
+    let mut bytes = whole[..8].to_vec();
     let record = |bytes: &mut Vec<u8>, op: u8, content: &[u8]| {
         bytes.push(op);
         bytes.extend((content.len() as u64).to_le_bytes());
@@ -94,13 +99,31 @@ fn unchunked() -> (Vec<u8>, Vec<usize>) {
     for index in 0..FRAMES {
         let time = (u64::from(index) * 1_000_000_000 + 7).to_le_bytes();
         let head = [&0u16.to_le_bytes()[..], &u32::from(index).to_le_bytes(), &time, &time].concat();
-        record(&mut bytes, 5, &[head, image(1000 + index, "16UC1", index.into())].concat());
+        let message = [head, image(1000 + index, "16UC1", index.into())].concat();
+        if let Some(name) = compression {
+            let mut inner = Vec::new();
+            record(&mut inner, 5, &message);
+            let packed = match name {
+                "zstd" => compress_to_vec(&inner[..], CompressionLevel::Fastest),
+                _ => inner.clone(),
+            };
+            let sizes = [&(inner.len() as u64).to_le_bytes()[..], &crc32fast::hash(&inner).to_le_bytes()].concat();
+            let packed = [&text(name)[..], &(packed.len() as u64).to_le_bytes(), &packed].concat();
+            record(&mut bytes, 6, &[&time[..], &time, &sizes, &packed].concat());
+        } else {
+            record(&mut bytes, 5, &message);
+        }
         ends.push(bytes.len());
     }
     record(&mut bytes, 15, &[0; 4]);
     record(&mut bytes, 2, &[0; 20]);
-    bytes.extend(&with_chunks[..8]);
+    bytes.extend(&whole[..8]);
     (bytes, ends)
+}
+
+/// All forms.
+fn recordings() -> [(Vec<u8>, Vec<usize>); 4] {
+    [recording(), records(None), records(Some("")), records(Some("zstd"))]
 }
 
 fn frames(word: &str) -> Result<Vec<Result<VideoFrame, Error>>, Error> {
@@ -143,8 +166,10 @@ fn frames_have_their_stamps_and_can_be_sought() {
     assert!(source.seek(100) && source.next_frame().is_none());
     assert!(source.seek(2) && source.next_frame().is_some());
     // Without a summary nobody knows how many there are, nor where.
-    let found = frames_of(&path, &unchunked().0).unwrap();
-    assert_eq!(found.iter().map(|frame| seen(frame.as_ref().unwrap())).collect::<Vec<_>>(), expected);
+    for (bytes, _) in &recordings()[1..] {
+        let found = frames_of(&path, bytes).unwrap();
+        assert_eq!(found.iter().map(|frame| seen(frame.as_ref().unwrap())).collect::<Vec<_>>(), expected);
+    }
     let mut source = open(path.to_str().unwrap(), &SourceOptions::default()).unwrap();
     assert_eq!((source.frames(), source.seek(1)), (None, false));
 }
@@ -153,7 +178,7 @@ fn frames_have_their_stamps_and_can_be_sought() {
 fn a_file_that_is_cut_off_anywhere_gives_every_whole_message_and_one_error() {
     let folder = folder("mcap_cut");
     let path = folder.join("walk.mcap");
-    for (bytes, ends) in [recording(), unchunked()] {
+    for (bytes, ends) in recordings() {
         let data_end = *ends.last().unwrap();
         for cut in 0..bytes.len() {
             let whole = ends.iter().filter(|end| **end <= cut).count();
@@ -185,17 +210,20 @@ fn a_file_that_is_cut_off_anywhere_gives_every_whole_message_and_one_error() {
 fn a_byte_that_is_flipped_leaves_what_stands_before_it() {
     let folder = folder("mcap_flipped");
     let path = folder.join("walk.mcap");
-    let (bytes, ends) = recording();
-    for at in (8..bytes.len()).step_by(5) {
-        for mask in [0x01, 0x80, 0xff] {
+    for (bytes, ends) in [recording(), records(Some("zstd"))] {
+        let heads = heads(&bytes);
+        for (at, mask) in (8..bytes.len()).step_by(5).flat_map(|at| [(at, 0x01), (at, 0x80), (at, 0xff)]) {
             let mut other = bytes.clone();
             other[at] ^= mask;
             let Ok(found) = frames_of(&path, &other) else { continue };
             let before = ends.iter().filter(|end| **end <= at).count();
             let good: Vec<u16> = found.iter().flatten().map(first).collect();
-            let in_data = at >= ends[0] && at < *ends.last().unwrap();
-            if in_data {
-                assert!(good.len() >= before && good.iter().copied().eq((1000..).take(good.len())), "{at}: {good:?}");
+            // What a record is has no checksum: others are skipped, as the format wants it.
+            if at >= ends[0] && at < *ends.last().unwrap() && !heads.contains(&at) {
+                assert!(good.iter().copied().take(before).eq((1000..).take(before)), "{at}: {good:?}");
+                // No frame is missing without a word.
+                let is_said = found.last().is_some_and(Result::is_err);
+                assert!(is_said || good.iter().copied().eq((1000..).take(FRAMES.into())), "{at}: {good:?}");
             }
             assert!(good.len() <= FRAMES.into() && found.iter().filter(|frame| frame.is_err()).count() <= 1, "{at}");
         }
@@ -209,11 +237,11 @@ proptest! {
     fn bytes_that_are_changed_never_make_it_panic(
         changes in prop::collection::vec((0usize..10_000, any::<u8>()), 1..20),
         cut in 0usize..10_000,
-        is_chunked in any::<bool>(),
+        form in 0usize..4,
     ) {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("mcap_random");
         std::fs::create_dir_all(&folder).unwrap();
-        let (mut bytes, _) = if is_chunked { recording() } else { unchunked() };
+        let (mut bytes, _) = recordings()[form].clone();
         let length = bytes.len();
         for (at, value) in changes {
             bytes[at % length] = value;
@@ -297,12 +325,14 @@ fn a_bag_without_metadata_is_its_files_in_natural_order() {
 fn seeds_are_written() {
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/source");
     std::fs::create_dir_all(&corpus).unwrap();
-    let (chunked, records) = (recording().0, unchunked().0);
+    let [chunks, single, plain, zstd] = recordings().map(|(bytes, _)| bytes);
     let bag = b"rosbag2_bagfile_information:\n  relative_file_paths:\n    - 0.mcap\n  storage_identifier: mcap\n";
     // The first byte picks the source, as the target says.
     for (name, first, bytes) in [
-        ("chunks", 0, &chunked[..]),
-        ("records", 0, &records),
+        ("chunks", 0, &chunks[..]),
+        ("records", 0, &single),
+        ("plain", 0, &plain),
+        ("zstd", 0, &zstd),
         ("bag", 1, bag),
         ("tum", 2, b"# depth\n1.0 0.png\n1.5 0.png\n"),
         ("poses", 3, b"0.0 1 2 3 0 0 0 1\n1.0 1 2 3 0 0 0.7 0.7\n"),

@@ -191,6 +191,11 @@ impl Reader {
             let Some((channel, log_time)) = records::message(content) else {
                 return Err(self.input.fault(part.at, format!("a message of {} bytes", content.len())));
             };
+            // Chunks are ordered by what they say of their times, which no checksum is for.
+            if log_time < part.start {
+                let wrong = format!("a message of time {log_time} in a chunk that begins at {}", part.start);
+                return Err(self.input.fault(part.at, wrong));
+            }
             let range = from + place + MESSAGE_HEAD..from + place + content.len();
             let message = Message { channel, log_time, part: number, place, bytes: Arc::clone(&bytes), range };
             if self.is_wanted(channel) && message.key() >= self.from {

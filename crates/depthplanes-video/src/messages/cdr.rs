@@ -69,3 +69,28 @@ impl<'a> Cdr<'a> {
         std::str::from_utf8(text).map(str::to_string).map_err(|_| "text that is no UTF-8".to_string())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Cdr;
+
+    #[test]
+    fn fields_are_aligned_to_their_size_in_both_byte_orders_and_versions() {
+        // A byte, then a double, which version 1 aligns to 8 bytes and version 2 to 4; then text.
+        for (kind, double) in [(0, 8), (1, 8), (6, 4), (7, 4)] {
+            let is_big_endian = kind % 6 == 0;
+            let [mut number, mut length] = [2.5f64.to_le_bytes().to_vec(), 3u32.to_le_bytes().to_vec()];
+            if is_big_endian {
+                number.reverse();
+                length.reverse();
+            }
+            let mut bytes = vec![0, kind, 0, 0, 9];
+            bytes.resize(4 + double, 0);
+            bytes.extend([number, length, b"ab\0".to_vec()].concat());
+            let mut cdr = Cdr::new(&bytes).unwrap();
+            assert_eq!((cdr.u8(), cdr.f64(), cdr.text()), (Ok(9), Ok(2.5), Ok("ab".into())), "{kind}");
+            assert_eq!(cdr.u8().unwrap_err(), "1 bytes are needed, 0 are left");
+        }
+        assert!(Cdr::new(&[0, 3, 0, 0]).is_err() && Cdr::new(&[0]).is_err());
+    }
+}
