@@ -4,6 +4,8 @@ is read by them."""
 import base64
 import io
 import json
+import os
+import pathlib
 import subprocess
 
 import cv2
@@ -368,22 +370,36 @@ def test_the_scene_is_the_planes_outlines_and_what_is_gone_is_deleted(recorded):
             assert np.allclose([place.x, place.y, place.z], plane["centroid_m"])
 
 
+CLASSES = [SceneUpdate, RawImage, CameraCalibration, FrameTransform]
+
+
+def descriptions():
+    """The files of all messages that are recorded, those that others need first."""
+    described, known = FileDescriptorSet(), set()
+
+    def add(file):
+        if file.name not in known:
+            known.add(file.name)
+            for needed in file.dependencies:
+                add(needed)
+            file.CopyToProto(described.file.add())
+
+    for cls in CLASSES:
+        add(cls.DESCRIPTOR.file)
+    return described
+
+
 def test_the_descriptions_are_those_of_foxgloves_package(recorded):
+    """DEPTHPLANES_GOLDEN=update writes them anew, for another version of the package."""
     path, _, _ = recorded
+    if os.environ.get("DEPTHPLANES_GOLDEN") == "update":
+        assets = pathlib.Path(__file__).resolve().parents[2] / "crates/depthplanes-cli/src/commands/track/assets"
+        (assets / "foxglove.binpb").write_bytes(descriptions().SerializeToString(deterministic=True))
     with open(path, "rb") as file:
         schemas = make_reader(file).get_summary().schemas.values()
-    classes = {cls.DESCRIPTOR.full_name: cls for cls in (SceneUpdate, RawImage, CameraCalibration, FrameTransform)}
-    seen = [schema for schema in schemas if schema.encoding == "protobuf"]
-    assert {schema.name for schema in seen} == set(classes)
-    for schema in seen:
-        files = {file.name: file for file in FileDescriptorSet.FromString(schema.data).file}
-        todo = [classes[schema.name].DESCRIPTOR.file]
-        while todo:
-            file = todo.pop()
-            own = type(files[file.name])()
-            file.CopyToProto(own)
-            assert files[file.name] == own
-            todo += file.dependencies
+    seen = {schema.name: schema for schema in schemas if schema.encoding == "protobuf"}
+    assert set(seen) == {cls.DESCRIPTOR.full_name for cls in CLASSES}
+    assert all(FileDescriptorSet.FromString(schema.data) == descriptions() for schema in seen.values())
 
 
 @pytest.mark.parametrize("share", [0.3, 0.6, 0.9])

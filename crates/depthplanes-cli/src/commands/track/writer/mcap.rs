@@ -1,8 +1,8 @@
 //! A recording in MCAP, as Foxglove opens it: a chunk for each frame, so that whatever ends the program leaves whole ones.
 //!
-//! Messages are in Protobuf, with the descriptions that the Python package foxglove-schemas-protobuf 0.4 has
-//! (`assets/foxglove.binpb`, MIT, by Foxglove): in JSON the label images would be three times as large. The planes' record is
-//! JSON, the same as in `.jsonl`.
+//! Messages are in Protobuf: in JSON the label images would be a third larger and would have to be made text. Their
+//! descriptions, `assets/foxglove.binpb`, are those of the Python package foxglove-schemas-protobuf (MIT, by Foxglove);
+//! `tests/oracles/test_mcap.py` compares and renews them. The planes' record is JSON, the same as in `.jsonl`.
 
 use super::ids::by_id;
 use super::output::{Output, machine};
