@@ -92,20 +92,23 @@ impl Looked {
     /// # Errors
     /// [`Error::Source`] with the topics there are, or what is wrong with the file.
     pub(super) fn choose(&mut self, stated: Option<&str>, path: &Path) -> Result<Choice> {
-        let refused = |wrong: String, accepted: String| Err(Error::source(path.display(), wrong, accepted));
         let depth: Vec<String> = self.depth().into_iter().map(|(topic, _)| topic.clone()).collect();
-        let topic = match (stated, &depth[..]) {
-            (Some(topic), _) if self.pictures.contains_key(topic) => topic.to_string(),
-            (Some(topic), _) => return refused(format!("no pictures in a topic {topic}"), self.accepted(path)),
-            (None, [topic]) => topic.clone(),
-            (None, []) => match self.fault.take() {
-                Some(fault) => return Err(fault),
-                None => return refused("no depth in it".into(), self.accepted(path)),
-            },
-            (None, several) => return refused(format!("{} topics have depth", several.len()), self.accepted(path)),
+        let wrong = match (stated, &depth[..]) {
+            (Some(topic), _) if self.pictures.contains_key(topic) => return Ok(self.with_camera(topic)),
+            (None, [topic]) => return Ok(self.with_camera(topic)),
+            (None, [_, _, ..]) => format!("{} topics have depth", depth.len()),
+            (Some(topic), _) => format!("no pictures in a topic {topic}"),
+            (None, []) => "no depth in it".to_string(),
         };
-        let camera = self.camera_beside(&topic);
-        Ok(Choice { topic, camera })
+        // What is missing may stand behind what is wrong.
+        match self.fault.take().filter(|_| depth.len() < 2) {
+            Some(fault) => Err(fault),
+            None => Err(Error::source(path.display(), wrong, self.accepted(path))),
+        }
+    }
+
+    fn with_camera(&self, topic: &str) -> Choice {
+        Choice { topic: topic.into(), camera: self.camera_beside(topic) }
     }
 
     /// The topics with depth and what it is in; 16 bits of grey are depth where there is nothing else.
