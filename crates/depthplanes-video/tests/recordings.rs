@@ -133,6 +133,8 @@ fn frames(word: &str) -> Result<Vec<Result<VideoFrame, Error>>, Error> {
 
 /// Frames of these bytes as a file.
 fn frames_of(path: &Path, bytes: &[u8]) -> Result<Vec<Result<VideoFrame, Error>>, Error> {
+    // A file that is written over is flushed to the disk each time; a new one is not.
+    let _ = std::fs::remove_file(path);
     std::fs::write(path, bytes).unwrap();
     frames(path.to_str().unwrap())
 }
