@@ -155,6 +155,7 @@ stress: ## Run RUNS (100000) random maps through random methods, parameters and 
 
 fuzz: $(CARGO_FUZZ) ## Fuzz every reader for FUZZ_SECONDS each (30)
 	$(CARGO) test --package depthplanes-io --test fuzz_seeds -- --ignored
+	$(CARGO) test --package depthplanes-video --test recordings -- --ignored
 	@for target in fuzz/fuzz_targets/*.rs; do \
 		target=$$(basename "$$target" .rs); printf '\n== fuzzing %s for %s s\n' "$$target" $(FUZZ_SECONDS); \
 		RUSTC_BOOTSTRAP=1 PATH="$(CURDIR)/target/tools/bin:$$PATH" $(CARGO) fuzz run "$$target" -- \

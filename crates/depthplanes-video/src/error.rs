@@ -44,3 +44,12 @@ impl Error {
         Error::Io { path: path.display().to_string(), source }
     }
 }
+
+/// The beginning of a text from a file, for messages.
+pub(crate) fn short(text: &str) -> String {
+    const MOST: usize = 80;
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.to_string(),
+    }
+}

@@ -1,4 +1,4 @@
-//! Depth video: the frames of folders, data sets, pipes and synthetic cameras, one after the other.
+//! Depth video: the frames of folders, data sets, recordings, pipes and synthetic cameras, one after the other.
 //!
 //! ```
 //! use depthplanes_video::{SourceOptions, open};
@@ -14,15 +14,19 @@
 
 mod error;
 mod frame;
+pub mod mcap;
+mod messages;
 pub mod natural;
 mod pose_text;
 mod source;
 mod sources;
+mod word;
 
 pub use error::{Error, Result};
 pub use frame::VideoFrame;
 pub use source::{Source, SourceInfo, SourceOptions};
 pub use sources::{SOURCES, open};
+pub use word::path_and_topic;
 
 /// The program of the page on video is a documentation test.
 #[cfg(doctest)]

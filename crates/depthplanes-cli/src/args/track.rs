@@ -13,7 +13,7 @@ pub(crate) struct Track {
     pub(crate) method: &'static MethodInfo,
     pub(crate) parameters: Vec<(&'static str, f64)>,
     pub(crate) noise_table: Option<PathBuf>,
-    /// The file of a JSON line for each frame; `-` for standard output.
+    /// The file of a JSON line for each frame, or of a recording; `-` for standard output.
     pub(crate) out: Option<PathBuf>,
     /// The folder of label images.
     pub(crate) labels: Option<PathBuf>,
@@ -36,10 +36,13 @@ pub(crate) struct Track {
 /// The command; `method` has the flags of the method.
 pub(super) fn command(method: Vec<Arg>) -> Command {
     let source = Arg::new("source").value_name("SOURCE").required(true).help(
-        "A folder of maps, of TUM RGB-D or of 7-Scenes; - for raw frames on standard input; scene:SPEC for a synthetic camera",
+        "A folder of maps, of TUM RGB-D, 7-Scenes or rosbag2; FILE.mcap or FILE.mcap:/topic; - for raw frames on standard \
+         input; scene:SPEC for a synthetic camera",
     );
     let output = [
-        flags::path("out", "FILE").help("Write a JSON line for each frame (.jsonl, or - for standard output)"),
+        flags::path("out", "FILE").help(
+            "Write a JSON line for each frame (.jsonl, or - for standard output), or a recording for Foxglove (.mcap)",
+        ),
         flags::path("labels", "DIR")
             .help("Write a label image for each frame into this folder: pixels have their plane's id"),
         flags::path("overlays", "DIR")

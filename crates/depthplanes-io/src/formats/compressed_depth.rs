@@ -74,7 +74,7 @@ fn explains(a: f64, b: f64, pixels: &Pixels) -> bool {
         && b.is_finite()
         && (1.0..=1e6).contains(&a)
         && depths_m.contains(&farthest_m)
-        && values.iter().max().is_some_and(|largest| *largest > 0 && depths_m.contains(&nearest_m(*largest)))
+        && values.iter().max().is_some_and(|largest| *largest == 0 || depths_m.contains(&nearest_m(*largest)))
 }
 
 /// What the numbers of a 32FC1 `compressedDepth` payload mean: upstream restores

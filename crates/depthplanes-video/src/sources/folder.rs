@@ -31,9 +31,9 @@ fn open(word: &str, options: &SourceOptions) -> Result<Box<dyn Source>> {
 
 /// Whether a file is a map by its name, and none of our own results.
 fn is_map(name: &str) -> bool {
-    let extension = Path::new(name).extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let extension = Path::new(name).extension().unwrap_or_default();
     let is_ours = depthplanes_io::outputs::OUTPUTS.iter().any(|output| name.ends_with(&format!(".{}", output.file)));
-    !is_ours && FORMATS.iter().any(|format| format.extensions.contains(&extension.as_str()))
+    !is_ours && FORMATS.iter().flat_map(|format| format.extensions).any(|own| extension.eq_ignore_ascii_case(own))
 }
 
 /// Seconds of a unit of the numbers in the names, if these are times: they rise, and read as seconds, milli-, micro- or

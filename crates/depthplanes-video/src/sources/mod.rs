@@ -2,18 +2,23 @@
 
 mod files;
 mod folder;
+mod mcap;
 mod raw;
+mod rosbag2;
 mod scene;
 mod seven_scenes;
+mod topics;
 mod tum;
 
 use crate::error::{Error, Result};
 use crate::source::{Source, SourceInfo, SourceOptions};
 
 /// All sources; the first that takes a word opens it.
-pub const SOURCES: &[SourceInfo] = &[scene::SCENE, raw::RAW, tum::TUM, seven_scenes::SEVEN_SCENES, folder::FOLDER];
+pub const SOURCES: &[SourceInfo] =
+    &[scene::SCENE, raw::RAW, mcap::MCAP, rosbag2::ROSBAG2, tum::TUM, seven_scenes::SEVEN_SCENES, folder::FOLDER];
 
-/// Opens the source that a word stands for: a folder, a file, `-` for raw frames on standard input, `scene:SPEC`.
+/// Opens the source that a word stands for: a folder, a recording, `-` for raw frames on standard
+/// input, `scene:SPEC`.
 ///
 /// # Errors
 /// [`Error::Source`] for a word that no source takes, and those of opening it.

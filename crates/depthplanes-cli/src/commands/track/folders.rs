@@ -3,6 +3,7 @@
 use crate::args::Track;
 use crate::failure::{Failure, Outcome};
 use depthplanes_io::outputs;
+use depthplanes_video::path_and_topic;
 use std::path::{Path, PathBuf};
 
 /// Refuses folders of results that are the source, lie in it, or are the same, and a file of lines that is one of the source's.
@@ -16,7 +17,7 @@ pub(super) fn check(wanted: &Track) -> Outcome {
     let folders = [("--labels", &wanted.labels), ("--overlays", &wanted.overlays), ("--out", &wanted.out)];
     let given: Vec<(&str, PathBuf)> =
         folders.into_iter().filter_map(|(flag, path)| Some((flag, existing(path.as_deref()?)?))).collect();
-    let source = existing(Path::new(&wanted.source));
+    let source = existing(path_and_topic(&wanted.source).0);
     for (flag, path) in &given {
         if source.as_ref().is_some_and(|source| path.starts_with(source)) {
             let (path, source) = (path.display(), &wanted.source);

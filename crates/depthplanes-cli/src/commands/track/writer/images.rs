@@ -1,0 +1,59 @@
+//! A label image, or a picture, for each frame.
+
+use super::ids::by_id;
+use super::output::{Output, machine};
+use crate::commands::track::follow::Followed;
+use crate::failure::Outcome;
+use depthplanes_io::outputs::{self, grey16_png, tracked_png};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// The file of a frame in a folder.
+fn file(folder: &Path, frame: &Followed) -> PathBuf {
+    folder.join(format!("{:06}.png", frame.video.index))
+}
+
+fn made(folder: &Path) -> Outcome<PathBuf> {
+    std::fs::create_dir_all(folder).map_err(|error| machine(folder, error))?;
+    Ok(folder.into())
+}
+
+/// Label images.
+pub(super) struct Labels(PathBuf);
+
+impl Labels {
+    pub(super) fn new(folder: &Path) -> Outcome<Self> {
+        made(folder).map(Labels)
+    }
+}
+
+impl Output for Labels {
+    fn write(&mut self, frame: &Followed, _: &mut dyn Write) -> Outcome {
+        let found = &frame.detection;
+        let png = grey16_png(found.width, found.height, &by_id(frame)?);
+        Ok(outputs::write_file(&file(&self.0, frame), &png)?)
+    }
+}
+
+/// Pictures: of the planes, or of the ground where it was found.
+pub(super) struct Overlays(PathBuf);
+
+impl Overlays {
+    pub(super) fn new(folder: &Path) -> Outcome<Self> {
+        made(folder).map(Overlays)
+    }
+}
+
+impl Output for Overlays {
+    fn write(&mut self, frame: &Followed, _: &mut dyn Write) -> Outcome {
+        let path = file(&self.0, frame);
+        match frame.ground.as_ref().and_then(|ground| ground.png.as_ref()) {
+            Some(png) => outputs::write_file(&path, png)?,
+            None => {
+                let (view, sensor) = (frame.video.frame.view()?, &frame.video.frame.sensor);
+                outputs::write_file(&path, &tracked_png(view, sensor, &frame.detection, &frame.tracks.ids)?)?;
+            }
+        }
+        Ok(())
+    }
+}

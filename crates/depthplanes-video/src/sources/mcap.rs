@@ -1,0 +1,188 @@
+//! MCAP: depth maps of a topic of ROS 2 or Foxglove, with the camera of the topic beside it.
+
+use super::topics::{self, Choice};
+use crate::error::{Error, Result};
+use crate::frame::VideoFrame;
+use crate::mcap::{Message, Reader};
+use crate::messages::{Content, frame, type_of};
+use crate::source::{Source, SourceInfo, SourceOptions};
+use crate::word::path_and_topic as split;
+use depthplanes_io::ReadOptions;
+use depthplanes_io::camera_file::{CameraFile, parse};
+use std::path::{Path, PathBuf};
+
+pub(super) const MCAP: SourceInfo = SourceInfo {
+    name: "mcap",
+    about: "an MCAP file of ROS 2 or Foxglove; FILE.mcap:/topic if it has several depth topics",
+    is: |word| split(word).0.is_file() && is_mcap(split(word).0),
+    open: |word, options| {
+        let (path, topic) = split(word);
+        Ok(Box::new(Recording::open(vec![path.into()], topic, options)?))
+    },
+};
+
+/// By its name, also where the whole file is compressed, which is refused with what to do.
+pub(super) fn is_mcap(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.to_string_lossy().to_lowercase().contains(".mcap"))
+}
+
+/// The messages of one topic in files that follow each other.
+#[derive(Debug)]
+pub(super) struct Recording {
+    files: Vec<PathBuf>,
+    /// Frames of each file, if its summary says it.
+    counts: Vec<Option<u64>>,
+    /// The file that is read, and how many of its frames came so far.
+    at: usize,
+    of_file: u64,
+    reader: Reader,
+    choice: Choice,
+    /// The camera as the latest message has it, and that message's content.
+    camera: Option<(String, std::result::Result<CameraFile, String>)>,
+    next: u64,
+    options: ReadOptions,
+    is_over: bool,
+}
+
+impl Recording {
+    /// Opens files, of which there is one at least.
+    ///
+    /// # Errors
+    /// Of the first file; and [`Error::Source`] where there is no depth topic, or several and none is stated.
+    pub(super) fn open(files: Vec<PathBuf>, topic: Option<&str>, options: &SourceOptions) -> Result<Self> {
+        let mut reader = Reader::open(&files[0], options.read.decode.limits.max_bytes)?;
+        let mut looked = topics::look(&mut reader);
+        let choice = looked.choose(topic, &files[0])?;
+        let most = options.read.decode.limits.max_bytes;
+        // What is wrong with a further file is said when it is its turn.
+        let further = files[1..].iter().map(|file| Reader::open(file, most).ok()?.count(&choice.topic));
+        let counts = [reader.count(&choice.topic)].into_iter().chain(further).collect();
+        let mut recording = Recording {
+            files,
+            counts,
+            at: 0,
+            of_file: 0,
+            reader,
+            choice,
+            camera: None,
+            next: 0,
+            options: options.read.clone(),
+            is_over: false,
+        };
+        if let Some(camera) = looked.camera_of(&recording.choice) {
+            recording.take_camera(camera);
+        }
+        recording.reader.rewind(recording.choice.topics());
+        Ok(recording)
+    }
+
+    /// Goes on with a file, from its beginning.
+    fn go_to(&mut self, file: usize) -> Result<()> {
+        self.reader = Reader::open(&self.files[file], self.options.decode.limits.max_bytes)?;
+        self.reader.rewind(self.choice.topics());
+        (self.at, self.of_file) = (file, 0);
+        Ok(())
+    }
+
+    fn take_camera(&mut self, text: String) {
+        if self.camera.as_ref().is_none_or(|(known, _)| *known != text) {
+            let camera = parse(&text).map_err(|error| error.to_string());
+            self.camera = Some((text, camera));
+        }
+    }
+
+    /// The frame of a message; none if it has a camera, which is kept.
+    fn take(&mut self, message: &Message) -> Option<Result<VideoFrame>> {
+        let channel = self.reader.channel(message.channel)?;
+        let row = type_of(&channel.schema, &channel.encoding)?;
+        let read = (row.read)(message.data());
+        if row.is_camera {
+            match read.map(|read| read.content) {
+                Ok(Content::Camera(text)) => self.take_camera(text),
+                Ok(_) => (),
+                Err(wrong) => self.camera = Some((String::new(), Err(wrong))),
+            }
+            return None;
+        }
+        let (index, name) = (self.next, format!("{}#{}", channel.topic, self.next));
+        self.next += 1;
+        self.of_file += 1;
+        let read = match read {
+            Ok(read) => read,
+            Err(wrong) => return Some(Err(Error::source(name, wrong, format!("a whole {}", row.schema)))),
+        };
+        let time_s = read.stamp_s.unwrap_or(message.log_time as f64 * 1e-9);
+        let frame = self.frame(&read.content, &name);
+        Some(frame.map(|frame| VideoFrame { index, name, time_s: Some(time_s), pose: None, up: None, frame }))
+    }
+
+    fn frame(&self, content: &Content<'_>, name: &str) -> Result<depthplanes_io::Frame> {
+        if self.options.intrinsics.is_some() || self.options.camera_file.is_some() {
+            return frame(content, name, &self.options);
+        }
+        match &self.camera {
+            Some((_, Ok(camera))) => frame(content, name, &self.options.clone().camera(camera)),
+            Some((_, Err(wrong))) => {
+                let mut frame = frame(content, name, &self.options)?;
+                frame.warnings.push(format!("the camera of the recording is not used: {wrong}"));
+                Ok(frame)
+            }
+            None => frame(content, name, &self.options),
+        }
+    }
+
+    /// What is wrong with a file that came to its end with fewer or more frames than its summary says.
+    fn lacks(&self) -> Option<Error> {
+        let stated = self.counts[self.at].filter(|count| *count != self.of_file)?;
+        let wrong = format!("{} frames of {} that the summary tells of", self.of_file, stated);
+        let accepted = "a whole MCAP file; `mcap recover FILE` writes what can be saved into another one";
+        Some(Error::source(self.files[self.at].display(), wrong, accepted))
+    }
+}
+
+impl Source for Recording {
+    fn next_frame(&mut self) -> Option<Result<VideoFrame>> {
+        while !self.is_over {
+            match self.reader.next() {
+                Some(Ok(message)) => {
+                    if let Some(frame) = self.take(&message) {
+                        return Some(frame);
+                    }
+                }
+                Some(Err(error)) => {
+                    self.is_over = true;
+                    return Some(Err(error));
+                }
+                None => {
+                    self.is_over = self.at + 1 == self.files.len();
+                    let lacks = self.lacks();
+                    let gone_on = if self.is_over { Ok(()) } else { self.go_to(self.at + 1) };
+                    if let Some(error) = lacks.or(gone_on.err()) {
+                        self.is_over = true;
+                        return Some(Err(error));
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    fn frames(&self) -> Option<u64> {
+        self.counts.iter().copied().sum()
+    }
+
+    fn seek(&mut self, index: u64) -> bool {
+        let Some(frames) = self.frames() else { return false };
+        let (mut file, mut of_file) = (0, index.min(frames));
+        while file + 1 < self.files.len() && of_file >= self.counts[file].unwrap_or(0) {
+            of_file -= self.counts[file].unwrap_or(0);
+            file += 1;
+        }
+        let is_there = file == self.at || self.go_to(file).is_ok();
+        if !is_there || !self.reader.seek(&self.choice.topic, of_file).unwrap_or(false) {
+            return false;
+        }
+        (self.next, self.of_file, self.is_over) = (index.min(frames), of_file, false);
+        true
+    }
+}
