@@ -71,6 +71,28 @@ fn the_ground_is_in_the_lines_if_it_is_wanted() {
 }
 
 #[test]
+fn up_in_the_world_of_the_poses_is_up_in_every_frame() {
+    let bench = Bench::new("track_world_up");
+    let run = |up: &[&str]| {
+        let words = ["track", "scene:robot:seed=5001,size=320x240,frames=3", "--floor", "--out", "-"];
+        lines(&bench.run(&[&words, up].concat()).ok())
+    };
+    let (estimated, known) = (run(&[]), run(&["--world-up", "0,0,1"]));
+    for (line, of_pose) in estimated.iter().zip(&known) {
+        let floor = |line: &Value, of: &str| line["ground"]["floor"][of].as_f64().unwrap();
+        assert!((floor(line, "height_m") - floor(of_pose, "height_m")).abs() < 0.03, "{line} {of_pose}");
+        // Of the pose, up is the last row of the rotation.
+        let row = of_pose["pose"]["rotation"][2].as_array().unwrap();
+        let up = of_pose["ground"]["up"].as_array().unwrap();
+        assert!(row.iter().zip(up).all(|(a, b)| (a.as_f64().unwrap() - b.as_f64().unwrap()).abs() < 1e-9), "{of_pose}");
+    }
+    let words =
+        ["track", "scene:boxes:frames=1,pose=none,size=160x120", "--floor", "--world-up", "0,0,1", "--out", "-"];
+    let ran = bench.run(&words);
+    assert!(ran.code == Some(2) && ran.err.contains("has no pose; state --up"), "{}", ran.err);
+}
+
+#[test]
 fn a_broken_frame_is_said_and_survived_and_so_are_other_sizes_and_times() {
     let bench = Bench::new("track_broken");
     std::fs::create_dir(bench.folder.join("video")).unwrap();

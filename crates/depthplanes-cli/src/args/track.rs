@@ -22,6 +22,8 @@ pub(crate) struct Track {
     /// Whether the ground is wanted as well.
     pub(crate) floor: bool,
     pub(crate) up: Option<[f64; 3]>,
+    /// Up in the world of the poses.
+    pub(crate) world_up: Option<[f64; 3]>,
     pub(crate) camera_height: Option<f64>,
     /// Whether the newest frames are wanted, and others dropped.
     pub(crate) live: bool,
@@ -49,6 +51,10 @@ pub(super) fn command(method: Vec<Arg>) -> Command {
             .help("Write a picture for each frame into this folder; with --floor of the ground"),
         flags::switch("floor", "Find the floor, obstacles and steps of each frame too; they go into its line"),
     ];
+    let world_up = flags::numbers::<3>("world-up", "X,Y,Z")
+        .long("world-up")
+        .conflicts_with("up")
+        .help("Up in the world of the source's poses, such as 0,0,1: then up is known in every frame");
     let running = [
         flags::switch("live", "Drop frames rather than fall behind: the newest ones are wanted"),
         flags::count("jobs", "N")
@@ -63,6 +69,7 @@ pub(super) fn command(method: Vec<Arg>) -> Command {
         .arg(source)
         .args(output.map(under("Output")))
         .args(outputs::ground_flags().map(under("Ground")))
+        .arg(world_up.help_heading("Ground"))
         .args(flags::reading())
         .args(method)
         .args(running.map(under("Running")))
@@ -81,6 +88,7 @@ pub(super) fn from_matches(matches: &ArgMatches, method: &'static MethodInfo) ->
         overlays: path_given(matches, "overlays"),
         floor: matches.get_flag("floor"),
         up: matches.get_one("up").copied(),
+        world_up: matches.get_one("world-up").copied(),
         camera_height: matches.get_one("camera-height").copied(),
         live: matches.get_flag("live"),
         jobs: count("jobs"),

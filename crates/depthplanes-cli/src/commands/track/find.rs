@@ -67,9 +67,21 @@ impl<'a> Finder<'a> {
         Ok(Found { detection, ground })
     }
 
+    /// Up as it is stated, or else as the source says it; camera coordinates.
+    fn up(&self, video: &VideoFrame) -> Outcome<Up> {
+        let stated = match (self.wanted.world_up, &video.pose) {
+            (Some(up), Some(pose)) => Some(pose.to_camera(up)),
+            (Some(_), None) => {
+                return Err(Failure::request(format!("--world-up: {} has no pose; state --up", video.name)));
+            }
+            (None, _) => self.wanted.up,
+        };
+        Ok(stated.or(video.up).map_or(Ok(Up::Estimated), Up::known)?)
+    }
+
     fn ground(&mut self, video: &VideoFrame, detection: &Detection) -> Outcome<Ground> {
-        let VideoFrame { name, up, frame, .. } = video;
-        let known = up.or(self.wanted.up).map_or(Ok(Up::Estimated), Up::known)?;
+        let VideoFrame { name, frame, .. } = video;
+        let known = self.up(video)?;
         self.ground = std::mem::take(&mut self.ground).up(known);
         let (view, sensor) = (frame.view()?, &frame.sensor);
         let found = self.ground.find(view, detection, sensor)?;
