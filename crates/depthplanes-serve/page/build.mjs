@@ -4,6 +4,7 @@ import { build } from "esbuild";
 import { cp, mkdir, readFile, writeFile } from "node:fs/promises";
 
 const folder = process.argv[2] ?? "dist";
+process.chdir(import.meta.dirname);
 await mkdir(folder, { recursive: true });
 await build({
     entryPoints: ["src/main.js"],

@@ -1,8 +1,8 @@
 //! One open page: it is sent states, and the newest frame whenever it has drawn those before.
 
+use crate::event::Event;
 use crate::explainer::{Question, refusal};
-use crate::hub::Hub;
-use crate::player::Event;
+use crate::hub::{Hub, Shown};
 use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use serde::Deserialize;
 use serde_json::json;
@@ -54,6 +54,7 @@ pub(crate) async fn attend(mut socket: WebSocket, hub: Arc<Hub>, _place: OwnedSe
     shown.mark_changed();
     state.mark_changed();
     let mut page = Page { hub: &hub, under_way: 0, camera: 0, answer: None, heard: Instant::now() };
+    let mut pulse = tokio::time::interval(EVERY);
     let mut outcome = send(&mut socket, Message::text(hub.hello.clone())).await;
     while outcome.is_ok() && !*stopping.borrow() {
         outcome = tokio::select! {
@@ -71,7 +72,7 @@ pub(crate) async fn attend(mut socket: WebSocket, hub: Arc<Hub>, _place: OwnedSe
             }
             answer = answered(&mut page.answer) => send(&mut socket, Message::text(answer)).await,
             message = socket.recv() => page.hear(&mut socket, message).await,
-            () = tokio::time::sleep(EVERY) => page.ask(&mut socket).await,
+            _ = pulse.tick() => page.ask(&mut socket).await,
         };
     }
     let ending = CloseFrame { code: close_code::AWAY, reason: "the program has ended".into() };
@@ -89,7 +90,7 @@ struct Page<'a> {
 }
 
 impl Page<'_> {
-    async fn show(&mut self, socket: &mut WebSocket, shown: &crate::hub::Shown) -> Result<(), Gone> {
+    async fn show(&mut self, socket: &mut WebSocket, shown: &Shown) -> Result<(), Gone> {
         if let Some(rays) = shown.rays.as_ref().filter(|rays| rays.number != self.camera) {
             self.camera = rays.number;
             send(socket, Message::Binary(rays.message.clone())).await?;
@@ -142,7 +143,7 @@ impl Page<'_> {
         if self.answer.is_some() {
             return Err("the pixel before is still being explained");
         }
-        let frame = self.hub.recall(serial).ok_or("that frame has passed; pause, and pick the pixel again")?;
+        let frame = self.hub.recent.find(serial).ok_or("that frame has passed; pause, and pick the pixel again")?;
         let (answer, receiver) = oneshot::channel();
         let question = Question { frame, at, answer };
         self.hub.questions.try_send(question).map_err(|_| "too many pixels are being explained; try again")?;

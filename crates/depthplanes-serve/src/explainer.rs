@@ -1,6 +1,6 @@
 //! The thread that explains pixels, which takes several detections and holds up nobody else.
 
-use crate::hub::Recent;
+use crate::recent::Recent;
 use depthplanes::Detector;
 use depthplanes::explanation::Verdict;
 use depthplanes::methods::MethodInfo;

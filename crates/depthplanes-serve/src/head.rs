@@ -12,9 +12,20 @@ use depthplanes_video::VideoFrame;
 use serde_json::{Value, json};
 use std::time::Instant;
 
-/// Makes the message of a frame. `serial` is one more for each that is made, `camera` the number of its rays, `read_ms` how
-/// long it took to read.
-pub(crate) fn message(serial: u64, video: &VideoFrame, found: &Found<'_>, camera: Option<u64>, read_ms: f64) -> Bytes {
+/// What is known of a frame beside what was found in it.
+pub(crate) struct About {
+    /// One more for each message that is made.
+    pub(crate) serial: u64,
+    /// The number of its rays.
+    pub(crate) camera: Option<u64>,
+    /// Milliseconds that it took to read.
+    pub(crate) read_ms: f64,
+    /// What a person should know of it.
+    pub(crate) notes: Vec<String>,
+}
+
+/// Makes the message of a frame.
+pub(crate) fn message(about: About, video: &VideoFrame, found: &Found<'_>) -> Bytes {
     let start = Instant::now();
     let (frame, detection) = (&video.frame, found.detection);
     let view = frame.view().expect("it was looked at before");
@@ -28,12 +39,12 @@ pub(crate) fn message(serial: u64, video: &VideoFrame, found: &Found<'_>, camera
     }
     let rings = rings(found.outlines, &mut arrays);
     let planes: Vec<Value> = detection.planes.iter().map(|of| plane(of, found, frame.sensor.value_kind)).collect();
-    let mut stages = vec![("read", read_ms)];
+    let mut stages = vec![("read", about.read_ms)];
     stages.extend(&found.stages);
     stages.push(("message", start.elapsed().as_secs_f64() * 1e3));
     let head = json!({
         "type": "frame",
-        "serial": serial,
+        "serial": about.serial,
         "index": video.index,
         "name": video.name,
         "time_s": video.time_s,
@@ -46,8 +57,8 @@ pub(crate) fn message(serial: u64, video: &VideoFrame, found: &Found<'_>, camera
         "scale": picture.scale,
         "unit": if picture.is_metric { "m" } else { "map units" },
         "encoding": frame.encoding,
-        "camera": camera,
-        "notes": frame.warnings,
+        "camera": about.camera,
+        "notes": about.notes,
         "stages": stages,
         "planes": planes,
         "rings": rings,

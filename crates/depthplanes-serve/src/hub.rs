@@ -1,36 +1,22 @@
 //! What the threads share: the newest frame and state, and the queues of what is asked for.
 
-use crate::config::Limits;
+use crate::config::{Config, Limits};
+use crate::event::Event;
 use crate::explainer::Question;
 use crate::guard::Guard;
-use crate::player::Event;
 use crate::rays::Rays;
+use crate::recent::Recents;
 use axum::body::Bytes;
 use depthplanes_io::ReadOptions;
-use depthplanes_video::VideoFrame;
-use std::collections::VecDeque;
 use std::sync::mpsc::SyncSender;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use tokio::sync::{Semaphore, watch};
-
-/// Frames that can be explained after newer ones have come.
-const RECENT: usize = 4;
 
 /// A frame as clients get it.
 #[derive(Debug)]
 pub(crate) struct Shown {
     pub(crate) message: Bytes,
     pub(crate) rays: Option<Arc<Rays>>,
-}
-
-/// A frame that can be explained.
-#[derive(Clone, Debug)]
-pub(crate) struct Recent {
-    pub(crate) serial: u64,
-    pub(crate) video: Arc<VideoFrame>,
-    pub(crate) values: Vec<f64>,
-    /// The ids of its labels.
-    pub(crate) ids: Vec<u32>,
 }
 
 /// Shared by all.
@@ -48,12 +34,12 @@ pub(crate) struct Hub {
     pub(crate) uploads: Semaphore,
     pub(crate) events: SyncSender<Event>,
     pub(crate) questions: SyncSender<Question>,
-    recent: Mutex<VecDeque<Recent>>,
+    pub(crate) recent: Recents,
 }
 
 impl Hub {
     pub(crate) fn new(
-        config: &crate::config::Config,
+        config: &Config,
         hello: String,
         guard: Guard,
         events: SyncSender<Event>,
@@ -71,22 +57,7 @@ impl Hub {
             uploads: Semaphore::new(1),
             events,
             questions,
-            recent: Mutex::default(),
+            recent: Recents::default(),
         }
-    }
-
-    /// Keeps a frame for questions.
-    pub(crate) fn remember(&self, frame: Recent) {
-        let mut recent = self.recent.lock().unwrap_or_else(PoisonError::into_inner);
-        recent.push_back(frame);
-        if recent.len() > RECENT {
-            recent.pop_front();
-        }
-    }
-
-    /// The frame of that number, if it is kept.
-    pub(crate) fn recall(&self, serial: u64) -> Option<Recent> {
-        let recent = self.recent.lock().unwrap_or_else(PoisonError::into_inner);
-        recent.iter().find(|frame| frame.serial == serial).cloned()
     }
 }

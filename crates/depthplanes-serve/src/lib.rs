@@ -3,8 +3,8 @@
 //! In: a source of frames and a method. Out: a page on a socket of this machine.
 //!
 //! `source -> reader -> player (pipeline) -> newest frame -> clients`: the reader waits for the source, the player finds
-//! planes and never waits for anybody, and each client is sent the newest frame when it has drawn the one before.
-//! [docs/live.md](https://docs.rs/depthplanes-serve) says what the messages hold.
+//! planes and never waits for anybody, and each client is sent the newest frame when it has drawn those before. What the
+//! messages hold stands in docs/live.md.
 //!
 //! ```
 //! use depthplanes_serve::{Config, Server};
@@ -21,6 +21,7 @@ mod client;
 mod config;
 mod connections;
 mod error;
+mod event;
 mod explainer;
 mod guard;
 mod head;
@@ -32,6 +33,7 @@ mod pipeline;
 mod player;
 mod reader;
 mod rays;
+mod recent;
 mod server;
 mod state;
 mod upload;
@@ -39,3 +41,8 @@ mod upload;
 pub use config::{Config, Limits};
 pub use error::{Error, Result};
 pub use server::Server;
+
+/// The program of the page on the live page is a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/live.md")]
+struct Page;

@@ -1,11 +1,15 @@
 //! The thread that finds planes: it plays the source at its own pace, and does at once what pages ask for.
 
-use crate::head;
-use crate::hub::{Hub, Recent, Shown};
+use crate::event::Event;
+use crate::head::{self, About};
+use crate::hub::{Hub, Shown};
 use crate::pipeline::Pipeline;
 use crate::rays::Rays;
 use crate::reader::{Read, Reader};
+use crate::recent::Recent;
 use crate::state::State;
+use depthplanes_io::doubts;
+use depthplanes_io::outputs::Report;
 use depthplanes_video::VideoFrame;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
@@ -18,23 +22,7 @@ const LONGEST: Duration = Duration::from_secs(1);
 /// Frames that can be asked for one by one before the first of them is shown.
 const MOST_STEPS: u32 = 100;
 
-/// What reaches the player.
-pub(crate) enum Event {
-    Read(Read),
-    Play(bool),
-    /// One frame on, or back.
-    Step { back: bool },
-    Seek(u64),
-    Set { name: String, value: f64 },
-    /// All parameters as they were in the beginning.
-    Reset,
-    /// Shows a file instead of the source.
-    Show(Box<VideoFrame>),
-    /// Shows the source again.
-    Return,
-    Stop,
-}
-
+/// Plays one source.
 pub(crate) struct Player {
     pipeline: Pipeline,
     reader: Reader,
@@ -141,9 +129,10 @@ impl Player {
                 self.state.is_playing = plays && !self.state.has_ended;
             }
             Event::Step { back } => {
-                self.leave_file();
                 self.state.is_playing = false;
+                let was_file = self.leave_file();
                 match self.state.index {
+                    _ if was_file => (),
                     Some(index) if back => self.seek(index.saturating_sub(1)),
                     _ => self.steps = (self.steps + 1).min(MOST_STEPS),
                 }
@@ -167,7 +156,7 @@ impl Player {
                 self.current = Some((Arc::new(*video), 0.0));
                 self.look(true);
             }
-            Event::Return => self.leave_file(),
+            Event::Return => drop(self.leave_file()),
         }
     }
 
@@ -177,13 +166,15 @@ impl Player {
         self.is_stale = self.current.is_some();
     }
 
-    /// Back from a file to the source, at the frame that is next there.
-    fn leave_file(&mut self) {
-        if self.state.file.take().is_some() {
+    /// Back from a file to the source, at the frame that is next there; whether a file was shown.
+    fn leave_file(&mut self) -> bool {
+        let was_shown = self.state.file.take().is_some();
+        if was_shown {
             self.pipeline.forget();
             self.state.error = None;
-            self.steps = self.steps.max(1);
+            self.steps = 1;
         }
+        was_shown
     }
 
     fn seek(&mut self, index: u64) {
@@ -198,7 +189,7 @@ impl Player {
 
     /// Shows the next frame, and asks for the one after it.
     fn advance(&mut self) {
-        let Some(Read { frame, ms, .. }) = self.next.take() else { return };
+        let Some(Read { index, frame, ms, .. }) = self.next.take() else { return };
         match frame {
             None => return self.end(),
             Some(Ok(video)) => {
@@ -207,7 +198,7 @@ impl Player {
             }
             Some(Err(error)) => {
                 self.state.error = Some(error.to_string());
-                self.state.index = Some(self.state.index.map_or(0, |index| index + 1));
+                self.state.index = Some(index);
             }
         }
         self.steps = self.steps.saturating_sub(1);
@@ -239,6 +230,7 @@ impl Player {
             self.state.index = self.state.file.is_none().then_some(video.index).or(self.state.index);
         }
         let rays = self.rays_of(&video);
+        let (method, values) = (self.pipeline.method, self.pipeline.values().to_vec());
         let found = match self.pipeline.find(&video) {
             Ok(found) => found,
             Err(error) => {
@@ -246,12 +238,15 @@ impl Player {
                 return;
             }
         };
+        let mut notes = video.frame.warnings.clone();
+        if self.state.file.is_some() {
+            notes.extend(doubts(&Report::new(&video.name, &video.frame, method, &values, found.detection)));
+        }
         self.serial += 1;
-        let camera = rays.as_ref().map(|rays| rays.number);
-        let message = head::message(self.serial, &video, &found, camera, read_ms);
+        let about = About { serial: self.serial, camera: rays.as_ref().map(|rays| rays.number), read_ms, notes };
+        let message = head::message(about, &video, &found);
         let ids = found.tracks.ids.clone();
-        let values = self.pipeline.values().to_vec();
-        self.hub.remember(Recent { serial: self.serial, video, values, ids });
+        self.hub.recent.keep(Recent { serial: self.serial, video, values, ids });
         self.hub.shown.send_replace(Some(Arc::new(Shown { message, rays })));
     }
 

@@ -15,6 +15,8 @@ struct Request {
 /// What came of a request.
 pub(crate) struct Read {
     number: u64,
+    /// The frame's place in the source.
+    pub(crate) index: u64,
     /// `None` at the end.
     pub(crate) frame: Option<depthplanes_video::Result<Box<VideoFrame>>>,
     /// Milliseconds that it took.
@@ -61,15 +63,22 @@ impl Reader {
 }
 
 fn read_all(source: &mut dyn Source, requests: &Receiver<Request>, deliver: impl Fn(Read) -> bool) {
-    while let Ok(request) = requests.recv() {
-        if let Some(index) = request.seek {
-            source.seek(index);
+    let mut index = 0;
+    while let Ok(mut request) = requests.recv() {
+        // Only the newest counts: a slider asks for many.
+        while let Ok(newer) = requests.try_recv() {
+            request = Request { seek: newer.seek.or(request.seek), ..newer };
+        }
+        if let Some(wanted) = request.seek {
+            source.seek(wanted);
+            index = wanted;
         }
         let start = Instant::now();
         let frame = source.next_frame().map(|frame| frame.map(Box::new));
         let ms = start.elapsed().as_secs_f64() * 1e3;
-        if !deliver(Read { number: request.number, frame, ms }) {
+        if !deliver(Read { number: request.number, index, frame, ms }) {
             return;
         }
+        index += 1;
     }
 }

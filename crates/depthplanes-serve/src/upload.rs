@@ -1,7 +1,7 @@
 //! Files that are dragged onto the page.
 
+use crate::event::Event;
 use crate::hub::Hub;
-use crate::player::Event;
 use axum::body::{Body, to_bytes};
 use axum::extract::{Path, State};
 use axum::http::StatusCode;

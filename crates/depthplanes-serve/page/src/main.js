@@ -27,6 +27,7 @@ const pick = new Pick(find("pixel"), choose, ask);
 const sliders = new Sliders(find("parameters"), (name, value) => ask("set", { name, value }), () => ask("reset"));
 const timeline = new Timeline(document.querySelector("footer"), ask);
 const stages = new Stages(find("stages"), find("total"));
+globalThis.depthplanes = Object.assign(page, { view2d, view3d }); // for the browser's console, and for tests
 new Drop({ zone: find("drop"), button: find("open"), input: find("file") }, () => page.hello?.upload_bytes ?? Infinity, banner);
 
 function receive(message) {

@@ -1,7 +1,7 @@
 // The pixels of a map as points, made on the graphics processor from depth and the camera's rays.
 
 import {
-    BufferAttribute, BufferGeometry, DataTexture, GLSL3, NearestFilter, Points, RedIntegerFormat, ShaderMaterial,
+    BufferAttribute, BufferGeometry, DataTexture, GLSL3, NearestFilter, Points, RedIntegerFormat, ShaderMaterial, Sphere,
     UnsignedByteType, UnsignedShortType,
 } from "three";
 import { MARKS } from "./colours.js";
@@ -52,6 +52,7 @@ export class PointCloud {
         this.uniforms = Object.fromEntries(names.map(name => [name, { value: 0 }]));
         const material = new ShaderMaterial({ glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: this.uniforms });
         this.object = new Points(new BufferGeometry(), material);
+        this.object.visible = false;
         this.object.frustumCulled = false;
         this.uniforms.palette.value = new DataTexture(new Uint8Array(4 * PALETTE), PALETTE, 1);
         this.textures = {};
@@ -62,6 +63,7 @@ export class PointCloud {
         this.object.geometry.dispose();
         this.object.geometry = new BufferGeometry();
         this.object.geometry.setAttribute("position", new BufferAttribute(rays, 2));
+        this.object.geometry.boundingSphere = new Sphere(); // rays are no points: there is nothing to work out
         Object.assign(this, { width, height });
         this.uniforms.spacing.value = spacing;
     }

@@ -23,7 +23,7 @@ export class Timeline {
 
     show(state) {
         this.state = state;
-        this.play.textContent = state.is_playing ? "⏸" : "▶";
+        this.play.classList.toggle("playing", state.is_playing);
         this.play.disabled = state.has_ended && !state.file;
         this.back.disabled = !state.can_seek;
         this.on.disabled = state.has_ended;

@@ -3,11 +3,12 @@
 // The world of this view has y up and -z ahead. Where there is a floor it is y = 0, and the origin lies below the camera.
 
 import {
-    BoxGeometry, BufferAttribute, BufferGeometry, DoubleSide, EdgesGeometry, Group, LineBasicMaterial, LineSegments, Matrix4,
-    Mesh, MeshBasicMaterial, PerspectiveCamera, Points, Quaternion, Scene, Vector3, WebGLRenderer,
+    BufferAttribute, BufferGeometry, DoubleSide, Group, LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshBasicMaterial,
+    PerspectiveCamera, Quaternion, Scene, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { MARKS, css } from "./colours.js";
+import { fences } from "./fences.js";
 import { fitted, writeId } from "./labels.js";
 import { PointCloud } from "./points.js";
 
@@ -16,7 +17,8 @@ const BACKGROUND = 0x0f1216;
 const SLOW = 0.25;
 const GRID_M = 8;
 const LEAST_FOR_ID = 0.004;
-const OBSTACLE_DEPTH_M = 0.12;
+/** Metres of the free sectors above the floor, so that they are seen on it. */
+const FAN_M = 0.012;
 
 export class View3d {
     constructor(element) {
@@ -40,29 +42,30 @@ export class View3d {
         this.sensor = new Group().add(this.points.object, this.outlines, frustum());
         this.sensor.matrixAutoUpdate = false;
         this.grid = grid();
-        this.boxes = new Group();
+        this.fences = new Group();
         this.fan = new Group();
-        this.scene.add(this.sensor, this.grid, this.boxes, this.fan);
+        this.scene.add(this.sensor, this.grid, this.fences, this.fan);
         new ResizeObserver(() => this.resize()).observe(this.stage);
         this.renderer.domElement.addEventListener("webglcontextlost", () => this.say("The graphics processor was lost; reload the page for the view in space."));
-        this.reset();
     }
 
     say(text) {
         Object.assign(this.hint, { textContent: text, hidden: !text });
     }
 
-    /** Looks from above and behind the camera. */
+    /** Looks from above and behind the camera, from as far as the map is deep. */
     reset() {
-        if (!this.renderer) return;
-        this.camera.position.set(0.9, 2.3, 2.2);
-        this.controls.target.set(0, 0.5, -2.2);
+        if (!this.renderer || !this.frame) return;
+        const [far, height] = [medianDepth(this.frame), this.position?.y ?? 1];
+        this.camera.position.set(0.35 * far, height + 0.45 * far, 0.55 * far);
+        this.controls.target.set(0, 0.45 * height, -0.85 * far);
         this.controls.update();
         this.wake();
     }
 
     /** The rays of the frames that follow. */
     setCamera(camera) {
+        this.rays = camera.rays;
         if (this.renderer) this.points.setCamera(camera);
     }
 
@@ -74,6 +77,8 @@ export class View3d {
         this.scene.visible = metric;
         if (metric) {
             this.place(frame.ground, anew);
+            if (!this.hasLooked) this.reset();
+            this.hasLooked = true;
             this.points.show(frame);
             this.showOutlines(frame);
             this.showGround(frame);
@@ -114,13 +119,16 @@ export class View3d {
 
     showGround({ ground }) {
         this.grid.visible = this.floor && Boolean(ground?.floor);
-        for (const group of [this.boxes, this.fan]) {
-            group.children.forEach(child => child.geometry.dispose());
+        for (const group of [this.fences, this.fan]) {
+            group.traverse(object => {
+                object.geometry?.dispose();
+                object.material?.dispose();
+            });
             group.clear();
         }
         if (!ground?.floor) return;
         if (this.sectors) this.fan.add(...ground.sectors.filter(sector => sector.free_m > 0).map(sectorMesh));
-        if (this.obstacles) this.boxes.add(...ground.obstacles.flatMap(obstacleBox));
+        if (this.obstacles) this.fences.add(...fences(this.frame, this.rays).map(fence));
     }
 
     /** Draws once, as soon as the browser draws. */
@@ -156,6 +164,11 @@ export class View3d {
         this.camera.updateProjectionMatrix();
         this.wake();
     }
+}
+
+function medianDepth(frame) {
+    const depths = frame.depth.filter((code, at) => at % 97 === 0 && code > 0).sort();
+    return depths.length ? frame.low + (depths[depths.length >> 1] - 1) * frame.scale : 2;
 }
 
 /** Where the sensor stands in this view's world: position and turn. */
@@ -217,32 +230,33 @@ const onFloor = (bearing_deg, distance, height) => {
 
 const shade = mark => (MARKS[mark][0] << 16) | (MARKS[mark][1] << 8) | MARKS[mark][2];
 
-/** A free sector, red along its end where something blocks it. */
+/** A free sector; its end is red where something blocks it, and green where no more floor is seen. */
 function sectorMesh({ from_deg, to_deg, free_m, is_blocked }) {
     const geometry = new BufferGeometry();
-    const corners = [[0, 0.012, 0], onFloor(from_deg, free_m, 0.012), onFloor(to_deg, free_m, 0.012)];
+    const corners = [[0, FAN_M, 0], onFloor(from_deg, free_m, FAN_M), onFloor(to_deg, free_m, FAN_M)];
     geometry.setAttribute("position", new BufferAttribute(new Float32Array(corners.flat()), 3));
-    const look = { transparent: true, depthWrite: false, side: DoubleSide };
-    const mesh = new Mesh(geometry, new MeshBasicMaterial({ ...look, color: shade(1), opacity: is_blocked ? 0.3 : 0.16 }));
-    if (is_blocked) {
-        const end = lines(shade(2));
-        refill(end, [...corners[1], ...corners[2]]);
-        mesh.add(end);
-    }
-    return mesh;
+    const look = { color: shade(1), transparent: true, opacity: 0.13, depthWrite: false, side: DoubleSide };
+    const end = lines(shade(is_blocked ? 2 : 1));
+    refill(end, [...corners[1], ...corners[2]]);
+    return new Mesh(geometry, new MeshBasicMaterial(look)).add(end);
 }
 
-/** A box at the near side of an obstacle, or under the edge of a drop. */
-function obstacleBox({ is_drop, distance_m, bearing_deg, width_m, height_m }) {
-    const height = Math.max(Math.abs(height_m), 0.02);
-    const geometry = new BoxGeometry(Math.max(width_m, 0.02), height, OBSTACLE_DEPTH_M);
+/** An obstacle as a fence along its near side, a drop as one down from its edge. */
+function fence({ is_drop, posts }) {
     const look = { color: shade(is_drop ? 4 : 2), transparent: true };
-    const [x, , z] = onFloor(bearing_deg, distance_m, 0);
-    return [
-        new Mesh(geometry, new MeshBasicMaterial({ ...look, opacity: 0.14, depthWrite: false })),
-        new LineSegments(new EdgesGeometry(geometry), new LineBasicMaterial({ ...look, opacity: 0.9 })),
-    ].map(object => {
-        object.position.set(x, Math.sign(height_m || 1) * height / 2, z - OBSTACLE_DEPTH_M / 2);
-        return object;
-    });
+    const [sheet, edges] = [[], []];
+    for (let at = 0; at + 1 < posts.length; at++) {
+        const [a, b] = [posts[at], posts[at + 1]];
+        if (!a || !b) continue;
+        const [p, q, r, s] = [[a.x, 0, a.z], [b.x, 0, b.z], [b.x, b.height, b.z], [a.x, a.height, a.z]];
+        sheet.push(...p, ...q, ...r, ...p, ...r, ...s);
+        edges.push(...p, ...q, ...s, ...r);
+        if (!posts[at - 1]) edges.push(...p, ...s);
+        if (!posts[at + 2]) edges.push(...q, ...r);
+    }
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array(sheet), 3));
+    const drawn = lines(look.color, { transparent: true, opacity: 0.6 });
+    refill(drawn, edges);
+    return new Mesh(geometry, new MeshBasicMaterial({ ...look, opacity: 0.13, depthWrite: false, side: DoubleSide })).add(drawn);
 }
