@@ -38,6 +38,8 @@ pub struct Page {
     socket: WebSocket<TcpStream>,
     /// Whether it says that it has drawn frames.
     pub draws: bool,
+    /// The newest state.
+    state: Value,
 }
 
 impl Page {
@@ -54,7 +56,7 @@ impl Page {
         let stream = TcpStream::connect(address).unwrap();
         stream.set_read_timeout(Some(LONG)).unwrap();
         match tungstenite::client(request, stream) {
-            Ok((socket, _)) => Ok(Page { socket, draws: true }),
+            Ok((socket, _)) => Ok(Page { socket, draws: true, state: Value::Null }),
             Err(tungstenite::HandshakeError::Failure(tungstenite::Error::Http(response))) => Err(response.status().as_u16()),
             Err(error) => panic!("{error}"),
         }
@@ -70,9 +72,17 @@ impl Page {
 
     /// The next message; of binary ones the head. `None` when the server has closed the connection.
     pub fn message(&mut self) -> Option<Value> {
+        let start = Instant::now();
         loop {
+            assert!(start.elapsed() < LONG, "nothing but pings");
             match self.socket.read() {
-                Ok(Message::Text(text)) => return Some(serde_json::from_str(&text).unwrap()),
+                Ok(Message::Text(text)) => {
+                    let message: Value = serde_json::from_str(&text).unwrap();
+                    if message["type"] == "state" {
+                        self.state = message.clone();
+                    }
+                    return Some(message);
+                }
                 Ok(Message::Binary(bytes)) => {
                     let head = head(&bytes);
                     if self.draws && head["type"] == "frame" {
@@ -87,8 +97,11 @@ impl Page {
         }
     }
 
-    /// The next message of a type for which something holds.
+    /// The next message of a type for which something holds; of states the one that is known, if it holds.
     pub fn until(&mut self, kind: &str, holds: impl Fn(&Value) -> bool) -> Value {
+        if kind == self.state["type"] && holds(&self.state) {
+            return self.state.clone();
+        }
         let start = Instant::now();
         while let Some(message) = self.message() {
             if message["type"] == kind && holds(&message) {
