@@ -112,18 +112,17 @@ test("a file that is dragged in is shown, and one that is no map is refused in w
         for (const type of ["dragover", "drop"]) document.body.dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
     }, [name, [...bytes]]);
     const pgm = Buffer.concat([Buffer.from("P5\n64 48\n65535\n"), Buffer.alloc(64 * 48 * 2)]);
-    for (let at = 0; at < 64 * 48; at++) pgm.writeUInt16BE(at % 64 < 40 ? 1500 : 2500, pgm.length - 64 * 48 * 2 + 2 * at);
+    for (let at = 0; at < 64 * 48; at++) pgm.writeUInt16BE([1500, 2500, 65535][Math.floor(at % 64 / 25)], pgm.length - 64 * 48 * 2 + 2 * at);
     await drop("two walls.pgm", pgm);
     await until(async () => assert.match(await page.locator("#frame-name").textContent(), /^two walls\.pgm/));
-    await until(async () => assert.equal(await planes(page), 2));
-    assert.ok(await page.locator("#notes li").count() > 0);
+    await until(async () => assert.ok(await planes(page) >= 2));
+    assert.match(await page.locator("#notes").textContent(), /--missing 65535/);
     assert.match(await page.locator("#view3d .hint").textContent(), /--intrinsics/);
     await drop("letter.txt", Buffer.from("Dear Sir"));
     await until(async () => assert.match(await page.locator("#banner").textContent(), /letter\.txt: /));
     page.complaints = page.complaints.filter(text => !text.includes("422")); // the browser notes that the server refused it
     await page.click("#leave-file");
     await until(async () => assert.match(await page.locator("#frame-name").textContent(), /^frame-/));
-    await page.click("#play");
 }));
 
 test("pages of other sites get nothing", async () => {
@@ -163,9 +162,18 @@ test("it connects again after the program was started anew", async () => {
 
 test("twenty pages at once, one of them frozen, and none without frames", async () => {
     // Without the view in space, which these processors would draw by software for all of them.
-    const many = await browser("--disable-3d-apis");
-    const pages = await Promise.all(Array.from({ length: 20 }, () => open(many.context, server.url)));
+    const many = await browser("--disable-3d-apis", "--window-size=480,360");
+    const shared = await serve("scene:robot:sensor=kinect,size=160x120,frames=60", "--port", "0");
+    const pages = [];
+    while (pages.length < 20) {
+        const page = await open(many.context, shared.url);
+        await page.setViewportSize({ width: 480, height: 360 });
+        // What plays while they open would only slow that.
+        if (pages.length === 0) await pausedAt(page, 10);
+        pages.push(page);
+    }
     const [frozen, ...others] = pages;
+    await others[0].click("#play");
     assert.match(await frozen.locator("#view3d .hint").textContent(), /no WebGL/);
     const held = frozen.evaluate(() => {
         const end = performance.now() + 5000;
@@ -173,14 +181,15 @@ test("twenty pages at once, one of them frozen, and none without frames", async 
         return Number(document.body.dataset.serial);
     });
     const before = await Promise.all(others.map(page => serialAbove(page, 0)));
-    await Promise.all(others.map((page, at) => serialAbove(page, before[at] + 10)));
+    await Promise.all(others.map((page, at) => serialAbove(page, before[at] + 3)));
     const newest = await others[0].evaluate(() => Number(document.body.dataset.serial));
     const at = await held;
-    assert.ok(newest > at + 10, `${newest} ${at}`);
+    assert.ok(newest > at + 3, `${newest} ${at}`);
     const later = await serialAbove(frozen, newest);
     assert.ok(later >= newest);
     for (const page of others) assert.deepEqual(page.complaints.filter(text => !text.includes("WebGL")), []);
     await many.close();
+    assert.equal(await shared.stop(), 0);
 });
 
 test("a recorded video", { skip: !existsSync("../../../shared/data/video_7scenes") && "../shared/data is missing" }, async () => {

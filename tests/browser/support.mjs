@@ -7,7 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
 
-const LONG_MS = 30_000;
+const LONG_MS = 60_000;
 const program = process.env.DEPTHPLANES ?? "depthplanes";
 
 /** A scene that shows floor, boxes and walls. */
@@ -67,7 +67,7 @@ export async function open(context, url) {
 
 /** Waits until a frame of a higher number is drawn; its number. */
 export async function serialAbove(page, serial) {
-    await page.waitForFunction(least => Number(document.body.dataset.serial) > least, serial, { timeout: LONG_MS });
+    await page.waitForFunction(least => Number(document.body.dataset.serial) > least, serial, { timeout: LONG_MS, polling: 100 });
     return page.evaluate(() => Number(document.body.dataset.serial));
 }
 

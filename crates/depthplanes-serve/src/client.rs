@@ -49,8 +49,7 @@ enum Wish {
 struct Gone;
 
 pub(crate) async fn attend(mut socket: WebSocket, hub: Arc<Hub>, _place: OwnedSemaphorePermit) {
-    let (mut shown, mut state, mut stopping) =
-        (hub.shown.subscribe(), hub.state.subscribe(), hub.stopping.subscribe());
+    let (mut shown, mut state, mut stopping) = (hub.shown.subscribe(), hub.state.subscribe(), hub.stopping.subscribe());
     shown.mark_changed();
     state.mark_changed();
     let mut page = Page { hub: &hub, under_way: 0, camera: 0, answer: None, heard: Instant::now() };
@@ -99,7 +98,11 @@ impl Page<'_> {
         send(socket, Message::Binary(shown.message.clone())).await
     }
 
-    async fn hear(&mut self, socket: &mut WebSocket, message: Option<Result<Message, axum::Error>>) -> Result<(), Gone> {
+    async fn hear(
+        &mut self,
+        socket: &mut WebSocket,
+        message: Option<Result<Message, axum::Error>>,
+    ) -> Result<(), Gone> {
         self.heard = Instant::now();
         match message {
             None | Some(Err(_) | Ok(Message::Close(_))) => Err(Gone),

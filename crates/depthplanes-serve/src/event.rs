@@ -8,9 +8,14 @@ pub(crate) enum Event {
     Read(Read),
     Play(bool),
     /// One frame on, or back.
-    Step { back: bool },
+    Step {
+        back: bool,
+    },
     Seek(u64),
-    Set { name: String, value: f64 },
+    Set {
+        name: String,
+        value: f64,
+    },
     /// All parameters as they were in the beginning.
     Reset,
     /// Shows a file instead of the source.

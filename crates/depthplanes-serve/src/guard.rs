@@ -69,7 +69,9 @@ mod tests {
             assert_eq!(refusal(&guard, host, None), None, "{host}");
             assert_eq!(refusal(&guard, host, Some(&format!("http://{host}"))), None, "{host}");
         }
-        for host in ["evil.example:7878", "localhost.evil.example", "192.168.1.4:7878", "", "[::1", "127.0.0.1.evil.example"] {
+        for host in
+            ["evil.example:7878", "localhost.evil.example", "192.168.1.4:7878", "", "[::1", "127.0.0.1.evil.example"]
+        {
             assert!(refusal(&guard, host, None).is_some(), "{host}");
         }
         for origin in ["http://evil.example", "null", "http://localhost:7879", "file://localhost:7878", ""] {

@@ -8,8 +8,8 @@ use crate::rays::Rays;
 use crate::recent::Recents;
 use axum::body::Bytes;
 use depthplanes_io::ReadOptions;
-use std::sync::mpsc::SyncSender;
 use std::sync::Arc;
+use std::sync::mpsc::SyncSender;
 use tokio::sync::{Semaphore, watch};
 
 /// A frame as clients get it.

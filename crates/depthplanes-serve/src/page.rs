@@ -16,7 +16,11 @@ const FILES: &[File] = &[
     File { path: "/page.css", kind: "text/css; charset=utf-8", bytes: include_bytes!("../page/dist/page.css") },
     File { path: "/page.js", kind: "text/javascript; charset=utf-8", bytes: include_bytes!("../page/dist/page.js") },
     File { path: "/icon.svg", kind: "image/svg+xml", bytes: include_bytes!("../page/dist/icon.svg") },
-    File { path: "/licences.txt", kind: "text/plain; charset=utf-8", bytes: include_bytes!("../page/dist/licences.txt") },
+    File {
+        path: "/licences.txt",
+        kind: "text/plain; charset=utf-8",
+        bytes: include_bytes!("../page/dist/licences.txt"),
+    },
 ];
 
 /// The page asks nobody else, and nobody else shows it in a frame.

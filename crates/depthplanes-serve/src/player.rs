@@ -31,6 +31,8 @@ pub(crate) struct Player {
     state: State,
     /// A frame that is ready to be shown, or the end.
     next: Option<Read>,
+    /// Whether it plays again after a file.
+    resumes: bool,
     /// Frames that are to be shown even though it does not play.
     steps: u32,
     /// The frame that is shown, with how long it took to read.
@@ -56,6 +58,7 @@ impl Player {
             hub,
             state,
             next: None,
+            resumes: false,
             steps: 0,
             current: None,
             is_stale: false,
@@ -129,8 +132,8 @@ impl Player {
                 self.state.is_playing = plays && !self.state.has_ended;
             }
             Event::Step { back } => {
-                self.state.is_playing = false;
                 let was_file = self.leave_file();
+                self.state.is_playing = false;
                 match self.state.index {
                     _ if was_file => (),
                     Some(index) if back => self.seek(index.saturating_sub(1)),
@@ -150,6 +153,7 @@ impl Player {
                 self.parameters_changed(outcome);
             }
             Event::Show(video) => {
+                self.resumes = if self.state.file.is_some() { self.resumes } else { self.state.is_playing };
                 (self.state.is_playing, self.steps) = (false, 0);
                 self.state.file = Some(video.name.clone());
                 self.pipeline.forget();
@@ -172,7 +176,7 @@ impl Player {
         if was_shown {
             self.pipeline.forget();
             self.state.error = None;
-            self.steps = 1;
+            (self.state.is_playing, self.steps) = (self.resumes, 1);
         }
         was_shown
     }

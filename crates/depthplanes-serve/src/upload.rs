@@ -29,7 +29,10 @@ pub(crate) async fn upload(
     };
     let most = hub.limits.upload_bytes;
     let too_large = |_| {
-        let message = format!("{name}: the file did not arrive, or is larger than {} MB; read it with `depthplanes detect`", most >> 20);
+        let message = format!(
+            "{name}: the file did not arrive, or is larger than {} MB; read it with `depthplanes detect`",
+            most >> 20
+        );
         (StatusCode::PAYLOAD_TOO_LARGE, message)
     };
     let late = |_| (StatusCode::REQUEST_TIMEOUT, format!("{name}: the file did not arrive within a minute"));

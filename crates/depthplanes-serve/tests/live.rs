@@ -225,7 +225,9 @@ fn connections_above_the_limit_wait_for_others_to_end() {
 fn what_is_no_wish_is_refused_and_a_flood_ends() {
     let server = started();
     let mut page = Page::open(server.address());
-    for text in ["", "{}", "[1", r#"{"type":"sing"}"#, r#"{"type":"seek","index":-1}"#, r#"{"type":"set","name":"theta"}"#] {
+    for text in
+        ["", "{}", "[1", r#"{"type":"sing"}"#, r#"{"type":"seek","index":-1}"#, r#"{"type":"set","name":"theta"}"#]
+    {
         page.send_text(text);
         let refused = page.until("refused", |_| true);
         assert!(refused["error"].as_str().unwrap().contains("not understood"), "{text}: {refused}");

@@ -14,7 +14,10 @@ struct Group {
 
 /// All commands, by who needs them.
 const GROUPS: &[Group] = &[
-    Group { heading: "Find planes", commands: &["detect", "floor", "track", "serve", "inspect", "explain", "noise", "demo"] },
+    Group {
+        heading: "Find planes",
+        commands: &["detect", "floor", "track", "serve", "inspect", "explain", "noise", "demo"],
+    },
     Group { heading: "See what there is", commands: &["presets", "encodings", "formats", "methods", "params"] },
     Group { heading: "Set up", commands: &["completions", "man"] },
     Group {

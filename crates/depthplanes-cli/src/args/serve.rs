@@ -45,9 +45,11 @@ pub(super) fn command(method: Vec<Arg>) -> Command {
             .value_parser(value_parser!(IpAddr))
             .default_value("127.0.0.1")
             .help("The address to listen at; 0.0.0.0 lets other machines in"),
-        Arg::new("host").long("host").value_name("NAME").action(ArgAction::Append).help(
-            "A name of this machine by which browsers may ask for the page, beside localhost and addresses",
-        ),
+        Arg::new("host")
+            .long("host")
+            .value_name("NAME")
+            .action(ArgAction::Append)
+            .help("A name of this machine by which browsers may ask for the page, beside localhost and addresses"),
     ];
     let running = [
         flags::count("kept-frames", "N").help("Frames for which a plane that is not seen keeps its id [default: 30]"),

@@ -57,7 +57,9 @@ impl Page {
         stream.set_read_timeout(Some(LONG)).unwrap();
         match tungstenite::client(request, stream) {
             Ok((socket, _)) => Ok(Page { socket, draws: true, state: Value::Null }),
-            Err(tungstenite::HandshakeError::Failure(tungstenite::Error::Http(response))) => Err(response.status().as_u16()),
+            Err(tungstenite::HandshakeError::Failure(tungstenite::Error::Http(response))) => {
+                Err(response.status().as_u16())
+            }
             Err(error) => panic!("{error}"),
         }
     }
@@ -136,7 +138,8 @@ pub fn request(address: SocketAddr, method: &str, path: &str, headers: &str, bod
     stream.set_read_timeout(Some(LONG)).unwrap();
     let host = if headers.contains("Host:") { String::new() } else { format!("Host: {address}\r\n") };
     let length = body.len();
-    let head = format!("{method} {path} HTTP/1.1\r\n{host}{headers}Connection: close\r\nContent-Length: {length}\r\n\r\n");
+    let head =
+        format!("{method} {path} HTTP/1.1\r\n{host}{headers}Connection: close\r\nContent-Length: {length}\r\n\r\n");
     stream.write_all(head.as_bytes()).unwrap();
     let _ = stream.write_all(body); // whoever refuses it need not read it
     let mut answer = Vec::new();
