@@ -43,8 +43,8 @@ export class Pick {
         if (!this.at || at.some((x, i) => x !== this.at[i]) || !this.explained) return;
         const more = error ? [node("p", { className: "verdict", textContent: error })] : [
             node("p", { className: "verdict", textContent: verdict.text }),
-            node("ul", { className: "why" }, ...findings.map(finding)),
             node("div", { className: "try" }, ...suggestions.map(suggestion => this.suggestion(suggestion))),
+            node("ul", { className: "why" }, ...findings.map(finding)),
         ];
         showPixel(this.element, this.explained, at, null, more);
     }

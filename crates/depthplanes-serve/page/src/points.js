@@ -36,8 +36,9 @@ void main() {
     vec3 grey = vec3(0.16 + 0.3 * share);
     int label = int(texelFetch(labels, at, 0).r);
     uint mark = byMarks ? texelFetch(marks, at, 0).r : 0u;
-    if (byMarks) shade = mark == 1u ? MARK[0] : mark == 2u ? MARK[1] : mark == 4u ? MARK[2] : grey;
-    else shade = label == 0 ? grey : texelFetch(palette, ivec2(min(label, ${PALETTE - 1}), 0), 0).rgb * (0.62 + 0.38 * share);
+    float light = 0.55 + 0.45 * share;
+    if (byMarks) shade = mark == 1u ? MARK[0] * light : mark == 2u ? MARK[1] * light : mark == 4u ? MARK[2] * light : grey;
+    else shade = label == 0 ? grey : texelFetch(palette, ivec2(min(label, ${PALETTE - 1}), 0), 0).rgb * light;
     if (chosen > 0) shade = label == chosen ? mix(shade, vec3(1.0), 0.25) : shade * 0.55;
 }`;
 
