@@ -101,6 +101,23 @@ const SHORT: &[(&str, &[&str])] = &[
             "noise-scale",
         ],
     ),
+    (
+        "serve",
+        &[
+            "port",
+            "bind",
+            "host",
+            "up",
+            "camera-height",
+            "preset",
+            "intrinsics",
+            "camera",
+            "encoding",
+            "scale",
+            "raw-size",
+            "method",
+        ],
+    ),
     ("inspect", &["recursive", "json", "preset", "intrinsics", "camera", "encoding", "scale", "raw-size"]),
     ("noise", &["recursive", "json", "preset", "intrinsics", "camera", "encoding", "scale", "raw-size"]),
     (
