@@ -19,21 +19,24 @@ pub(crate) struct Arrays {
 
 impl Arrays {
     pub(crate) fn add_u8(&mut self, name: &str, numbers: &[u8]) {
-        self.add(name, "u8", numbers.len(), numbers.iter().copied());
+        self.add(name, "u8", numbers, |number| [*number]);
     }
 
     pub(crate) fn add_u16(&mut self, name: &str, numbers: &[u16]) {
-        self.add(name, "u16", numbers.len(), numbers.iter().flat_map(|number| number.to_le_bytes()));
+        self.add(name, "u16", numbers, |number| number.to_le_bytes());
     }
 
     pub(crate) fn add_f32(&mut self, name: &str, numbers: &[f32]) {
-        self.add(name, "f32", numbers.len(), numbers.iter().flat_map(|number| number.to_le_bytes()));
+        self.add(name, "f32", numbers, |number| number.to_le_bytes());
     }
 
-    fn add(&mut self, name: &str, kind: &str, length: usize, bytes: impl Iterator<Item = u8>) {
-        self.listed.insert(name.into(), json!({"type": kind, "at": self.bytes.len(), "length": length}));
-        self.bytes.extend(bytes);
-        self.bytes.resize(self.bytes.len().next_multiple_of(ALIGNED), 0);
+    fn add<T, const N: usize>(&mut self, name: &str, kind: &str, numbers: &[T], bytes: impl Fn(&T) -> [u8; N]) {
+        let at = self.bytes.len();
+        self.listed.insert(name.into(), json!({"type": kind, "at": at, "length": numbers.len()}));
+        self.bytes.resize((at + N * numbers.len()).next_multiple_of(ALIGNED), 0);
+        for (place, number) in self.bytes[at..].chunks_exact_mut(N).zip(numbers) {
+            place.copy_from_slice(&bytes(number));
+        }
     }
 
     /// The whole message. The head is an object.
