@@ -7,6 +7,7 @@ const folder = process.argv[2] ?? "dist";
 process.chdir(import.meta.dirname);
 await mkdir(folder, { recursive: true });
 await build({
+    absWorkingDir: import.meta.dirname,
     entryPoints: ["src/main.js"],
     outfile: `${folder}/page.js`,
     bundle: true,
