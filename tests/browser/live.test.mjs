@@ -192,10 +192,10 @@ test("twenty pages at once, one of them frozen, and none without frames", async 
     assert.equal(await shared.stop(), 0);
 });
 
-const RECORDED = join(import.meta.dirname, "../../../shared/data/video_7scenes");
-const isMissing = process.env.CI !== "true" && !existsSync(RECORDED);
-test("a recorded video", { skip: isMissing && "../shared/data is missing" }, async () => {
-    const recorded = await serve(RECORDED, "--port", "0");
+const DATA = process.env.DEPTHPLANES_DATA ?? join(import.meta.dirname, "../../../shared/data");
+const isMissing = process.env.CI !== "true" && !existsSync(DATA);
+test("a recorded video", { skip: isMissing && "there is no data, set DEPTHPLANES_DATA" }, async () => {
+    const recorded = await serve(join(DATA, "video_7scenes"), "--port", "0");
     await withPage(async page => {
         await pausedAt(page, 20);
         assert.ok(await planes(page) > 10);

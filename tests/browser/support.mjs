@@ -77,7 +77,7 @@ export async function pausedAt(page, index) {
     await page.waitForSelector("#play:not(.playing)");
     await page.locator("#seek").fill(String(index));
     await until(async () => assert.match(await page.locator("#position").textContent(), new RegExp(`^${index} /`)));
-    await until(async () => assert.match(await page.locator("#frame-name").textContent(), new RegExp(`0${index} `)));
+    await until(async () => assert.match(await page.locator("#frame-name").textContent(), new RegExp(`0${index}[ .]`)));
 }
 
 /** Repeats until nothing is thrown. */
