@@ -41,7 +41,7 @@ WASM := --manifest-path tests/wasm/Cargo.toml
 say = @printf '\n== %s\n' '$(1)'
 
 .NOTPARALLEL:
-.PHONY: help demo dist try-deb deny test lint fmt format clippy rust-tests rustdoc packages package targets oracles bench bench-planar bench-track ablate tables peers results golden stress fuzz clean
+.PHONY: help demo dist try-deb deny test lint fmt format clippy rust-tests rustdoc packages package targets browser oracles bench bench-planar bench-track ablate tables peers results golden stress fuzz clean
 
 help: ## List the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -61,7 +61,7 @@ deny: ## Check licences, sources and advisories of all dependencies
 
 # Two at a time, which does not show the figures that `make oracles` prints.
 test: ORACLE_FLAGS = --numprocesses 2
-test: lint rust-tests rustdoc packages targets oracles ## Run every check: formatting, lints, all tests, documentation, packages, other targets, Python oracles
+test: lint rust-tests rustdoc packages targets browser oracles ## Run every check: formatting, lints, all tests, documentation, packages, other targets, the page in a browser, Python oracles
 	$(call say,all checks passed)
 
 lint: format clippy ## Check formatting and lints, change nothing
@@ -98,11 +98,15 @@ package: ## Make the packages of all crates and build each from what is in it
 # The program has the library's name, so its own page is left out.
 rustdoc:
 	$(call say,documentation)
-	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --no-deps --package depthplanes --package depthplanes-io --package depthplanes-video --features depthplanes-io/exr
+	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --no-deps --package depthplanes --package depthplanes-io --package depthplanes-video --package depthplanes-serve --features depthplanes-io/exr
 
 targets: ## Check that the library compiles for WebAssembly, 64-bit ARM and 32-bit x86
 	$(call say,other targets)
 	@scripts/targets
+
+browser: ## Build the live page anew and compare it, and use it in headless Chromium
+	$(call say,the live page in a browser)
+	@scripts/browser
 
 oracles: $(VENV)
 	$(call say,Python oracles)
@@ -165,7 +169,7 @@ fmt: ## Format the code
 	@if scripts/component rustfmt; then $(CARGO) fmt --all && $(CARGO) fmt $(WASM); else exit 1; fi
 
 clean: ## Remove everything that was made
-	rm -rf target .venv .venv-peers out dist fuzz/target tests/wasm/target
+	rm -rf target .venv .venv-peers out dist fuzz/target tests/wasm/target tests/browser/node_modules crates/depthplanes-serve/page/node_modules
 	find . -name __pycache__ -o -name .pytest_cache | xargs rm -rf
 
 # Anew when the packages change, or when an earlier attempt did not finish.

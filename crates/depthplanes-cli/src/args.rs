@@ -8,6 +8,7 @@ mod exit_codes;
 mod flags;
 mod help;
 mod outputs;
+mod serve;
 mod several;
 mod tips;
 mod track;
@@ -26,6 +27,7 @@ use std::process::ExitCode;
 
 pub(crate) use clap_complete::Shell;
 pub(crate) use flags::{Inputs, Reading};
+pub(crate) use serve::Serve;
 pub(crate) use several::{Compare, Eval, Paper};
 pub(crate) use track::Track;
 
@@ -37,6 +39,7 @@ pub(crate) enum Command {
     Inspect { inputs: Inputs, reading: Box<Reading>, json: bool },
     Noise { inputs: Inputs, reading: Box<Reading>, json: bool },
     Score(Score),
+    Serve(Box<Serve>),
     Track(Box<Track>),
     Eval(Eval),
     Paper(Paper),
@@ -170,6 +173,7 @@ fn command(matches: &ArgMatches) -> Command {
             json: matches.get_flag("json"),
         },
         "score" => Command::Score(score(matches)),
+        "serve" => Command::Serve(Box::new(serve::from_matches(matches, method(matches).expect("it has a default")))),
         "track" => Command::Track(Box::new(track::from_matches(matches, method(matches).expect("it has a default")))),
         "eval" => Command::Eval(several::eval(matches)),
         "paper" => Command::Paper(several::paper(matches)),
@@ -215,6 +219,7 @@ fn program() -> clap::Command {
         explain_command(),
         floor_command(),
         track::command(one_method()),
+        serve::command(one_method()),
         inspect_command(),
         noise_command(),
         score_command(),

@@ -40,6 +40,45 @@ pub(crate) fn tidy_up_if_interrupted() {
 #[cfg(not(unix))]
 pub(crate) fn tidy_up_if_interrupted() {}
 
+/// A signal that ends a command which otherwise goes on.
+#[cfg(unix)]
+pub(crate) struct Interruption(signal_hook::iterator::Signals);
+
+#[cfg(unix)]
+impl Interruption {
+    /// From now on interrupting the program only ends what [`Interruption::wait`] waits for.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub(crate) fn heard() -> std::io::Result<Self> {
+        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+        let heard = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| !is_ignored(*signal));
+        signal_hook::iterator::Signals::new(heard).map(Interruption)
+    }
+
+    /// Waits for the signal.
+    pub(crate) fn wait(mut self) {
+        self.0.forever().next();
+    }
+}
+
+/// Where there are no signals the system ends the program its own way.
+#[cfg(not(unix))]
+pub(crate) struct Interruption;
+
+#[cfg(not(unix))]
+impl Interruption {
+    pub(crate) fn heard() -> std::io::Result<Self> {
+        Ok(Interruption)
+    }
+
+    pub(crate) fn wait(self) {
+        loop {
+            std::thread::park();
+        }
+    }
+}
+
 /// Whether whoever started the program wants it to live on, as `nohup` does, and shells where it runs in the background.
 #[cfg(unix)]
 fn is_ignored(signal: i32) -> bool {

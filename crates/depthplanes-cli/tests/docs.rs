@@ -101,8 +101,9 @@ fn run_in(bench: &Bench, path: &Path) {
 }
 
 /// Documents whose commands are run.
-const WITH_COMMANDS: [&str; 19] = [
+const WITH_COMMANDS: [&str; 20] = [
     "docs/cli.md",
+    "docs/live.md",
     "docs/robot.md",
     "docs/video.md",
     "docs/ngaf.md",

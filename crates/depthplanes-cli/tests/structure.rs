@@ -85,6 +85,7 @@ fn unsafe_code_stands_in_the_kernels_alone() {
     }
     assert_eq!(files_with("crates/depthplanes-io/src", &["unsafe "]), [""; 0]);
     assert_eq!(files_with("crates/depthplanes-video/src", &["unsafe "]), [""; 0]);
+    assert_eq!(files_with("crates/depthplanes-serve/src", &["unsafe "]), [""; 0]);
     assert_eq!(files_with("crates/depthplanes-cli/src", &["unsafe "]), [""; 0]);
 }
 
@@ -111,7 +112,7 @@ fn the_tests_that_the_architecture_names_exist() {
 
 #[test]
 fn nobody_but_tests_and_benchmarks_asks_for_stages_by_themselves() {
-    for krate in ["depthplanes", "depthplanes-io", "depthplanes-video", "depthplanes-cli"] {
+    for krate in ["depthplanes", "depthplanes-io", "depthplanes-video", "depthplanes-serve", "depthplanes-cli"] {
         let folder = &format!("crates/{krate}/src");
         assert_eq!(files_with(folder, &["::internals"]), [""; 0], "{folder}");
     }

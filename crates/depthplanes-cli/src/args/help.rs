@@ -14,7 +14,10 @@ struct Group {
 
 /// All commands, by who needs them.
 const GROUPS: &[Group] = &[
-    Group { heading: "Find planes", commands: &["detect", "floor", "track", "inspect", "explain", "noise", "demo"] },
+    Group {
+        heading: "Find planes",
+        commands: &["detect", "floor", "track", "serve", "inspect", "explain", "noise", "demo"],
+    },
     Group { heading: "See what there is", commands: &["presets", "encodings", "formats", "methods", "params"] },
     Group { heading: "Set up", commands: &["completions", "man"] },
     Group {
@@ -96,6 +99,23 @@ const SHORT: &[(&str, &[&str])] = &[
             "raw-size",
             "method",
             "noise-scale",
+        ],
+    ),
+    (
+        "serve",
+        &[
+            "port",
+            "bind",
+            "host",
+            "up",
+            "camera-height",
+            "preset",
+            "intrinsics",
+            "camera",
+            "encoding",
+            "scale",
+            "raw-size",
+            "method",
         ],
     ),
     ("inspect", &["recursive", "json", "preset", "intrinsics", "camera", "encoding", "scale", "raw-size"]),

@@ -12,6 +12,7 @@ mod man;
 mod next;
 mod noise;
 mod score;
+mod serve;
 mod track;
 
 use crate::args::Command;
@@ -37,6 +38,7 @@ pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
         Command::Inspect { inputs, reading, json } => inspect::run(inputs, reading, *json, out),
         Command::Noise { inputs, reading, json } => noise::run(inputs, reading, *json, out),
         Command::Track(wanted) => track::run(wanted, out),
+        Command::Serve(wanted) => serve::run(wanted, out),
         Command::Score(wanted) => score::run(wanted, out),
         Command::Compare(wanted) => compare::run(wanted, out),
         Command::Eval(wanted) => crate::eval::run(wanted, out),

@@ -1,0 +1,115 @@
+// The side panel: planes, the ground, milliseconds, and what is known of a pixel.
+
+import { css } from "./colours.js";
+import { valueAt } from "./message.js";
+import { node } from "./sliders.js";
+
+const metres = (value, digits = 2) => Number.isFinite(value) ? `${value.toFixed(digits)} m` : "–";
+const degrees = value => Number.isFinite(value) ? `${value.toFixed(0)}°` : "–";
+const swatch = plane => {
+    const mark = node("span", { className: "swatch" });
+    mark.style.background = css(plane.colour);
+    return mark;
+};
+
+/** How steep a plane is: against the floor, or else against the picture. */
+export const tilt = plane => plane.slope_deg ?? (plane.normal ? Math.acos(Math.min(1, -plane.normal[2])) * 180 / Math.PI : NaN);
+
+/** The table of planes; `choose` is told the id of the row that is clicked. */
+export function showPlanes(element, { planes, unit }, chosen, choose) {
+    const scroll = element.scrollTop;
+    const head = [["id", "text"], ["class", "text"], ["depth"], ["tilt"], ["area"], ["pixels"]];
+    const heads = head.map(([textContent, className = ""]) => node("th", { textContent, className }));
+    const rows = planes.map(plane => {
+        const cells = [
+            node("td", { className: "text" }, swatch(plane), String(plane.id)),
+            node("td", { className: "text", textContent: plane.class ?? "–" }),
+            node("td", { textContent: metres(plane.depth_m) }),
+            node("td", { textContent: degrees(tilt(plane)) }),
+            node("td", { textContent: Number.isFinite(plane.area_m2) ? `${plane.area_m2.toFixed(2)} m²` : "–" }),
+            node("td", { textContent: plane.pixel_count }),
+        ];
+        const row = node("tr", { className: plane.id === chosen ? "chosen" : "" }, ...cells);
+        row.dataset.id = plane.id;
+        return row;
+    });
+    const table = node("table", {}, node("thead", {}, node("tr", {}, ...heads)), node("tbody", {}, ...rows));
+    element.onclick = event => {
+        const row = event.target.closest("tbody tr");
+        if (row) choose(Number(row.dataset.id));
+    };
+    element.replaceChildren(planes.length ? table : node("p", { className: "muted", textContent: "No plane in this frame." }));
+    element.scrollTop = scroll;
+}
+
+export function showGround(element, { ground }) {
+    if (!ground?.floor) {
+        const why = ground ? "No floor in this frame." : "The floor needs the unit of the map and its camera.";
+        return element.replaceChildren(node("p", { className: "muted", textContent: why }));
+    }
+    const { floor, obstacles, sectors, steps } = ground;
+    const things = obstacles.filter(of => !of.is_drop);
+    const free = Math.max(0, ...sectors.map(sector => sector.free_m));
+    const near = of => of.length ? `${of.length}, nearest ${metres(of[0].distance_m)}` : "none";
+    element.replaceChildren(facts([
+        ["Camera height", `${floor.height_m.toFixed(3)} ± ${floor.height_sd_m.toFixed(3)} m`],
+        ["Tilt, roll", `${floor.tilt_deg.toFixed(1)}°, ${floor.roll_deg.toFixed(1)}°`],
+        ["Confidence", `${Math.round(100 * floor.confidence)} %`],
+        ["Obstacles", near(things)],
+        ["Drops", near(obstacles.filter(of => of.is_drop))],
+        ["Farthest free", metres(free)],
+        ...(steps.length ? [["Steps", steps.length]] : []),
+    ]));
+}
+
+function facts(rows) {
+    return node("dl", { className: "facts" }, ...rows.flatMap(([name, value]) => [
+        node("dt", { textContent: name }), node("dd", {}, ...[value].flat()),
+    ]));
+}
+
+/** Milliseconds of each stage, averaged over the last frames. */
+export class Stages {
+    constructor(element, total) {
+        Object.assign(this, { element, total, means: new Map() });
+    }
+
+    add({ stages }) {
+        const names = new Set(stages.map(([name]) => name));
+        for (const name of this.means.keys()) if (!names.has(name)) this.means.delete(name);
+        for (const [name, ms] of stages) this.means.set(name, 0.9 * (this.means.get(name) ?? ms) + 0.1 * ms);
+    }
+
+    show() {
+        const all = [...this.means];
+        const most = Math.max(0.1, ...all.map(([, ms]) => ms));
+        this.element.replaceChildren(...all.map(([name, ms]) => {
+            const bar = node("i");
+            bar.style.width = `${100 * ms / most}%`;
+            return node("div", { className: "stage-row" }, node("span", { textContent: name }),
+                node("span", { className: "meter" }, bar), node("span", { textContent: `${ms.toFixed(2)} ms` }));
+        }));
+        this.total.textContent = `${all.reduce((sum, [, ms]) => sum + ms, 0).toFixed(1)} ms a frame`;
+    }
+}
+
+/** What is known of a pixel of the map: its value, and its plane. */
+export function showPixel(element, frame, [u, v], plane, more) {
+    const at = Math.floor(v / frame.step) * frame.width + Math.floor(u / frame.step);
+    const value = valueAt(frame, at);
+    const unit = frame.unit === "m" ? " m" : "";
+    const rows = [["Column, row", `${u}, ${v}`], ["Depth", Number.isNaN(value) ? "not measured" : value.toPrecision(4) + unit]];
+    if (frame.unit !== "m") rows[1][0] = "Value";
+    if (plane) {
+        rows.push(["Plane", [swatch(plane), `${plane.id}${plane.class ? `, ${plane.class}` : ""}`]]);
+        rows.push(["Pixels", plane.pixel_count]);
+        if (plane.normal) {
+            rows.push(["Normal", plane.normal.map(x => x.toFixed(3)).join(", ")]);
+            rows.push(["From camera", metres(plane.distance_m, 3)]);
+            rows.push(["Rough (rms)", `${(1000 * plane.rms_m).toFixed(1)} mm`]);
+        }
+        if (Number.isFinite(plane.height_m)) rows.push(["Above floor", metres(plane.height_m, 3)]);
+        if (plane.age) rows.push(["Followed for", `${plane.age} frames`]);
+    }
+    element.replaceChildren(facts(rows), ...more);
+}

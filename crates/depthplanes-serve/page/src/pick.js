@@ -1,0 +1,78 @@
+// Picking a pixel: its plane is chosen, and where there is none the server explains why.
+
+import { showPixel } from "./panels.js";
+import { node } from "./sliders.js";
+
+export class Pick {
+    /** `choose` is told the id of the plane, or null; `ask` asks the server. */
+    constructor(element, choose, ask) {
+        Object.assign(this, { element, choose, ask });
+        this.clear();
+    }
+
+    clear() {
+        this.at = null;
+        this.element.replaceChildren(node("p", { className: "muted", textContent: "Click a pixel to see its plane, or why it has none." }));
+    }
+
+    /** A pixel of the map was picked. */
+    pick(frame, at) {
+        this.at = at;
+        const plane = planeAt(frame, at);
+        this.choose(plane?.id ?? null);
+        this.explanation = null;
+        if (plane) return this.show(frame);
+        this.ask("pause"); // what is explained is what is seen
+        this.ask("explain", { serial: frame.serial, at });
+        this.explained = frame;
+        showPixel(this.element, frame, at, null, [node("p", { className: "muted", textContent: "No plane here. Asking why …" })]);
+    }
+
+    /** A new frame: the pixel may be another's now. */
+    show(frame) {
+        if (!this.at) return;
+        if (this.at[0] >= frame.map.width || this.at[1] >= frame.map.height) return this.clear();
+        const plane = planeAt(frame, this.at);
+        if (!plane && this.explained) return;
+        this.explained = null;
+        showPixel(this.element, frame, this.at, plane, plane ? [] : [node("p", { className: "muted", textContent: "No plane here now." })]);
+    }
+
+    /** The server's answer. */
+    answer({ at, verdict, findings, suggestions, error }) {
+        if (!this.at || at.some((x, i) => x !== this.at[i]) || !this.explained) return;
+        const more = error ? [node("p", { className: "verdict", textContent: error })] : [
+            node("p", { className: "verdict", textContent: verdict.text }),
+            node("div", { className: "try" }, ...suggestions.map(suggestion => this.suggestion(suggestion))),
+            node("ul", { className: "why" }, ...findings.map(finding)),
+        ];
+        showPixel(this.element, this.explained, at, null, more);
+    }
+
+    suggestion({ parameters, plane_pixels, planes_before, planes_after }) {
+        const values = parameters.map(([name, value]) => `${name} ${value}`).join(", ");
+        const title = `The pixel is then on a plane of ${plane_pixels} pixels; ${planes_after} planes instead of ${planes_before}.`;
+        const button = node("button", { textContent: `Try ${values}`, title });
+        button.onclick = () => {
+            this.explained = null;
+            parameters.forEach(([name, value]) => this.ask("set", { name, value }));
+        };
+        return button;
+    }
+}
+
+function planeAt(frame, [u, v]) {
+    const label = frame.labels[Math.floor(v / frame.step) * frame.width + Math.floor(u / frame.step)];
+    return label ? frame.planes[label - 1] : undefined;
+}
+
+function finding({ stage, subject, quantities, outcome, refuses }) {
+    const parts = quantities.map(({ name, value, unit, limit }) => {
+        const [kind, bound] = limit ? Object.entries(limit)[0] : [];
+        const words = { AtMost: "at most", AtLeast: "at least", MoreThan: "more than" }[kind];
+        const of = unit === "standard deviations" ? "sd" : unit;
+        return `${name} ${value === null ? "–" : Number(value.toPrecision(3))}${of ? ` ${of}` : ""}${words ? ` (${words} ${Number(bound.toPrecision(3))})` : ""}`;
+    });
+    const text = `${stage} · ${subject}: ${[...parts, outcome].filter(Boolean).join(", ")}`;
+    return node("li", { textContent: text, className: refuses ? "no" : "" });
+}
