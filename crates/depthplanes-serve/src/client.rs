@@ -52,6 +52,8 @@ pub(crate) async fn attend(mut socket: WebSocket, hub: Arc<Hub>, _place: OwnedSe
     let (mut shown, mut state, mut stopping) = (hub.shown.subscribe(), hub.state.subscribe(), hub.stopping.subscribe());
     shown.mark_changed();
     state.mark_changed();
+    // Where the queue is full the player is awake.
+    let _ = hub.events.try_send(Event::Opened);
     let mut page = Page { hub: &hub, under_way: 0, camera: 0, answer: None, heard: Instant::now() };
     let mut pulse = tokio::time::interval(EVERY);
     let mut outcome = send(&mut socket, Message::text(hub.hello.clone())).await;

@@ -6,6 +6,8 @@ use depthplanes_video::VideoFrame;
 /// What reaches the player.
 pub(crate) enum Event {
     Read(Read),
+    /// Somebody has opened a page.
+    Opened,
     Play(bool),
     /// One frame on, or back.
     Step {

@@ -99,7 +99,7 @@ impl Player {
 
     /// How long nothing is to be done; `None` until something comes.
     fn wait(&self) -> Option<Duration> {
-        let plays = self.state.is_playing && self.next.is_some();
+        let plays = self.plays() && self.next.is_some();
         if self.steps > 0 && self.next.is_some() || self.is_stale {
             return Some(Duration::ZERO);
         }
@@ -107,7 +107,13 @@ impl Player {
     }
 
     fn is_due(&self) -> bool {
-        self.next.is_some() && (self.steps > 0 || self.state.is_playing && self.due() <= Instant::now())
+        self.next.is_some() && (self.steps > 0 || self.plays() && self.due() <= Instant::now())
+    }
+
+    /// Whether time goes on. What can be asked for again rests after its first frame while nobody looks.
+    fn plays(&self) -> bool {
+        let is_watched = || self.hub.shown.receiver_count() > 0;
+        self.state.is_playing && (!self.reader.can_seek || self.current.is_none() || is_watched())
     }
 
     /// When the next frame is to be shown: as long after the one before as it was taken after it.
@@ -126,7 +132,7 @@ impl Player {
     fn obey(&mut self, event: Event) {
         match event {
             Event::Read(read) if self.reader.is_newest(&read) => self.next = Some(read),
-            Event::Read(_) | Event::Stop => (),
+            Event::Read(_) | Event::Opened | Event::Stop => (),
             Event::Play(plays) => {
                 self.leave_file();
                 self.state.is_playing = plays && !self.state.has_ended;

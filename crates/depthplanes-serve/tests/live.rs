@@ -63,6 +63,18 @@ fn play_pause_step_and_seek_do_what_they_say() {
 }
 
 #[test]
+fn what_can_be_asked_for_again_rests_while_nobody_looks() {
+    let server = started();
+    let mut page = Page::open(server.address());
+    page.until("frame", |frame| frame["index"] == 2);
+    drop(page);
+    std::thread::sleep(Duration::from_millis(1000)); // 30 frames
+    let frame = Page::open(server.address()).until("frame", |_| true);
+    assert!((2..15).contains(&frame["index"].as_u64().unwrap()), "{}", frame["index"]);
+    Page::open(server.address()).until("frame", |frame| frame["index"] == 20); // and it goes on
+}
+
+#[test]
 fn it_plays_at_the_pace_of_the_source() {
     let server = started(); // 30 frames a second
     let mut page = Page::open(server.address());
