@@ -1,6 +1,8 @@
 //! Signals that would end the program without a word become errors with an exit code of the machine's, and those that
 //! interrupt it leave no file that is not finished.
 
+use std::sync::atomic::{AtomicI32, Ordering};
+
 /// What to do about signals. Where it cannot be set the system's own way stays.
 #[cfg(unix)]
 pub(crate) fn prepare() {
@@ -39,6 +41,28 @@ pub(crate) fn tidy_up_if_interrupted() {
 
 #[cfg(not(unix))]
 pub(crate) fn tidy_up_if_interrupted() {}
+
+/// For a command that finishes what it writes when it is interrupted: from now on the signal's number, 0 before. A second
+/// signal ends the program as the first one ends others.
+pub(crate) fn interruption() -> &'static AtomicI32 {
+    static SIGNAL: AtomicI32 = AtomicI32::new(0);
+    #[cfg(unix)]
+    {
+        let wait = || {
+            let Ok(Interruption(mut signals)) = Interruption::heard() else { return };
+            if let Some(first) = signals.forever().next() {
+                SIGNAL.store(first, Ordering::Relaxed);
+            }
+            if let Some(second) = signals.forever().next() {
+                depthplanes_io::outputs::remove_unfinished();
+                std::process::exit(128 + second);
+            }
+        };
+        // Without a thread the system's own way stays.
+        drop(std::thread::Builder::new().stack_size(1 << 17).spawn(wait));
+    }
+    &SIGNAL
+}
 
 /// A signal that ends a command which otherwise goes on.
 #[cfg(unix)]

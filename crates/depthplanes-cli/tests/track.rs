@@ -251,6 +251,50 @@ fn frames_are_never_overwritten_by_what_is_made_from_them() {
     assert_eq!(bench.read("video/000000.pgm"), map);
 }
 
+#[cfg(unix)]
+#[test]
+fn inputs_are_not_overwritten_under_other_names_either() {
+    let bench = Bench::new("track_inputs");
+    std::fs::create_dir_all(bench.folder.join("video")).unwrap();
+    bench.write("video/0.pgm", &two_planes(1000));
+    bench.write("camera.json", br#"{"fx": 30, "fy": 30, "cx": 15.5, "cy": 11.5, "width": 32, "height": 24}"#);
+    bench.write("raw.bin", &[4; 32 * 24 * 2]);
+    bench.run(&["track", "scene:boxes:frames=2,size=64x48", "--out", "t.mcap"]).ok();
+    std::fs::hard_link(bench.folder.join("t.mcap"), bench.folder.join("same.mcap")).unwrap();
+    let before = bench.read("t.mcap");
+    let error = bench.run(&["track", "t.mcap:/depthplanes/labels", "--out", "same.mcap"]).fails(2);
+    assert!(error.contains("same.mcap is the file of t.mcap") && bench.read("t.mcap") == before, "{error}");
+    let error = bench.run(&["track", "video", "--camera", "camera.json", "--out", "camera.json"]).fails(2);
+    assert!(
+        error.contains("is the file of camera.json") && bench.read("camera.json").starts_with(b"{\"fx\""),
+        "{error}"
+    );
+    let words = ["track", "-", "--raw-size", "32x24", "--out", "raw.bin"];
+    let mut command = bench.command();
+    let stdin = std::fs::File::open(bench.folder.join("raw.bin")).unwrap();
+    let ran = Ran::from(command.args(words).stdin(stdin).output().unwrap());
+    assert!(ran.code == Some(2) && ran.err.contains("standard input"), "{}", ran.err);
+    assert_eq!(bench.read("raw.bin"), [4; 32 * 24 * 2]);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_recording_is_finished() {
+    let bench = Bench::new("track_interrupted");
+    let words = ["track", "scene:boxes:size=64x48,frames=1000000", "--out", "t.mcap"];
+    let child = bench.command().args(words).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let start = Instant::now();
+    let size = || bench.folder.join("t.mcap").metadata().map_or(0, |file| file.len());
+    while size() < 20_000 && start.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let signalled = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(signalled.success());
+    let ran = Ran::from(child.wait_with_output().unwrap());
+    assert!(ran.code == Some(130) && ran.err.contains("interrupted after "), "{ran:?}");
+    assert!(bench.read("t.mcap").ends_with(b"\x89MCAP0\r\n"), "the file has its end");
+}
+
 /// Ids of the recorded videos by the frames in which their plane has at least so many pixels.
 fn frames_of_ids(lines: &[Value], least: u64) -> BTreeMap<u64, usize> {
     let mut frames = BTreeMap::new();

@@ -1,6 +1,7 @@
 //! Connections, no more at once than are accepted.
 
 use axum::serve::Listener;
+use std::future::Future;
 use std::io;
 use std::net::SocketAddr;
 use std::pin::Pin;
@@ -10,6 +11,7 @@ use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::time::{Instant, Sleep};
 
 /// Waits after the system has refused a connection, which it does while there are too many.
 const PAUSE: Duration = Duration::from_millis(200);
@@ -36,7 +38,8 @@ impl Listener for Bounded {
             match self.listener.accept().await {
                 Ok((stream, address)) => {
                     let _ = stream.set_nodelay(true); // without it frames are only later
-                    return (Connection { stream, _place: place }, address);
+                    let silence = Box::pin(tokio::time::sleep(SILENCE));
+                    return (Connection { stream, silence, _place: place }, address);
                 }
                 Err(_) => tokio::time::sleep(PAUSE).await,
             }
@@ -48,15 +51,26 @@ impl Listener for Bounded {
     }
 }
 
+/// A connection that sends nothing for so long is closed: it holds a place. Open pages answer every 20 seconds.
+const SILENCE: Duration = Duration::from_secs(30);
+
 /// A connection, and its place among those that are accepted.
 pub(crate) struct Connection {
     stream: TcpStream,
+    /// When it has been silent for too long.
+    silence: Pin<Box<Sleep>>,
     _place: OwnedSemaphorePermit,
 }
 
 impl AsyncRead for Connection {
     fn poll_read(mut self: Pin<&mut Self>, cx: &mut Context<'_>, buffer: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.stream).poll_read(cx, buffer)
+        let read = Pin::new(&mut self.stream).poll_read(cx, buffer);
+        if read.is_ready() {
+            self.silence.as_mut().reset(Instant::now() + SILENCE);
+        } else if self.silence.as_mut().poll(cx).is_ready() {
+            return Poll::Ready(Err(io::ErrorKind::TimedOut.into()));
+        }
+        read
     }
 }
 

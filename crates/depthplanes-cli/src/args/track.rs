@@ -54,6 +54,7 @@ pub(super) fn command(method: Vec<Arg>) -> Command {
     let world_up = flags::numbers::<3>("world-up", "X,Y,Z")
         .long("world-up")
         .conflicts_with("up")
+        .requires("floor")
         .help("Up in the world of the source's poses, such as 0,0,1: then up is known in every frame");
     let running = [
         flags::switch("live", "Drop frames rather than fall behind: the newest ones are wanted"),
@@ -68,7 +69,7 @@ pub(super) fn command(method: Vec<Arg>) -> Command {
         .about("Follows planes through depth video: lasting ids, floor and obstacles frame by frame")
         .arg(source)
         .args(output.map(under("Output")))
-        .args(outputs::ground_flags().map(under("Ground")))
+        .args(outputs::ground_flags().map(|arg| arg.requires("floor")).map(under("Ground")))
         .arg(world_up.help_heading("Ground"))
         .args(flags::reading())
         .args(method)

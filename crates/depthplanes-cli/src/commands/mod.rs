@@ -24,7 +24,6 @@ use std::io::Write;
 pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
     let is_writing = match command {
         Command::Detect(wanted) => wanted.writes_files(),
-        Command::Track(wanted) => wanted.labels.is_some() || wanted.overlays.is_some(),
         Command::Demo { .. } | Command::Compare(_) | Command::Eval(_) | Command::Paper(_) | Command::Man { .. } => true,
         _ => false,
     };

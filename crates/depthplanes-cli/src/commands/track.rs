@@ -18,6 +18,7 @@ use crate::args::Track;
 use crate::failure::{Failure, Outcome, note, say};
 use crate::load;
 use crate::run::Recipe;
+use crate::signals;
 use depthplanes::noise::SensorNoise;
 use depthplanes_video::{Source, SourceOptions, open};
 use find::{Finder, Read, Searched};
@@ -26,6 +27,7 @@ use pace::Pace;
 use queue::{Came, Closing, InTurn, Queue, Taken, Taking};
 use stall::Stall;
 use std::io::Write;
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use writer::Writer;
 
@@ -38,6 +40,8 @@ const AHEAD: u64 = 2;
 const MOST_JOBS: usize = 4;
 /// Frames that fail of which is said why; the lines say it of all.
 const MOST_SAID: u64 = 5;
+/// How often an interruption and a source that stalls are looked for.
+const BEAT: Duration = Duration::from_millis(100);
 /// How often the pace is said.
 const EVERY: Duration = Duration::from_secs(1);
 
@@ -78,9 +82,8 @@ fn thread<'scope>(scope: &'scope std::thread::Scope<'scope, '_>, work: impl FnOn
 fn read_all(source: &mut dyn Source, most: Option<u64>, stall: &Stall, read: &Queue<Read>) {
     let _closing = Closing(read);
     for index in 0..most.unwrap_or(u64::MAX) {
-        let start = Instant::now();
         let Some(frame) = stall.during(|| source.next_frame()) else { break };
-        if !read.send(Read { start, index, frame }) {
+        if !read.send(Read { start: Instant::now(), index, frame }) {
             break;
         }
     }
@@ -105,8 +108,16 @@ fn write_all(
 ) -> Outcome {
     let (mut pace, mut said) = (Pace::new(), Instant::now());
     let (mut failed, mut dropped) = (0u64, 0u64);
+    let interruption = signals::interruption();
     loop {
-        let searched = match done.take_within(EVERY) {
+        let signal = interruption.load(Ordering::Relaxed);
+        if signal != 0 {
+            // The reading thread may wait for its source for ever: nobody waits for it.
+            writer.end(out)?;
+            say(&format!("interrupted after {} frames: {}", pace.frames, pace.line()));
+            std::process::exit(128 + signal);
+        }
+        let searched = match done.take_within(BEAT) {
             Came::Element(searched) => searched,
             Came::Nothing => {
                 stall.look();

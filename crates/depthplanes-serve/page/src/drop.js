@@ -1,7 +1,7 @@
 // Files that are dragged in, or opened: sent to the server, which reads them.
 
 export class Drop {
-    /** `fail` is told why a file was not read; `limit()` how many bytes the server accepts. */
+    /** `fail` is told why a file was not read, and null before it is known; `limit()` how many bytes the server accepts. */
     constructor({ zone, button, input }, limit, fail) {
         Object.assign(this, { limit, fail });
         const over = event => {
@@ -21,6 +21,7 @@ export class Drop {
     async send(files) {
         const [file, ...others] = files;
         if (!file) return;
+        this.fail(null); // what was said of another file
         if (others.length) return this.fail(`${files.length} files were dropped; one map at a time is shown`);
         if (file.size > this.limit()) {
             return this.fail(`${file.name}: ${(file.size / 2 ** 20).toFixed(0)} MB, and ${this.limit() / 2 ** 20} MB are accepted`);

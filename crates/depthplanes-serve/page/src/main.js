@@ -47,7 +47,10 @@ function begin(hello) {
 function connected(yes) {
     find("link").textContent = yes ? "live" : "no connection, trying again";
     find("link").classList.toggle("off", !yes);
-    if (yes) wait.next = null;
+    if (yes) {
+        wait.next = null;
+        banner(null);
+    }
     banner(yes ? page.state?.error : page.hello ? "The connection is lost. The page connects again as soon as the program answers." : null, "connection");
 }
 
@@ -86,7 +89,10 @@ function showPanels(now) {
     const time = frame.time_s === null ? "" : ` · ${frame.time_s.toFixed(2)} s`;
     find("frame-name").textContent = `${frame.name}${time} · ${frame.map.width} × ${frame.map.height} · ${frame.encoding}`;
     find("plane-count").textContent = frame.planes.length + (frame.lost ? `, ${frame.lost} out of sight` : "");
-    showPlanes(find("planes"), frame, page.chosen, id => choose(id === page.chosen ? null : id));
+    showPlanes(find("planes"), frame, page.chosen, id => {
+        pick.clear();
+        choose(id === page.chosen ? null : id);
+    });
     showGround(find("ground"), frame);
     stages.show();
     pick.show(frame);
@@ -122,7 +128,10 @@ function choose(id) {
 }
 
 find("banner-close").onclick = () => find("banner").hidden = true;
-find("leave-file").onclick = () => ask("return");
+find("leave-file").onclick = () => {
+    banner(null);
+    ask("return");
+};
 find("view-reset").onclick = () => view3d.reset();
 
 function setMode(mode) {

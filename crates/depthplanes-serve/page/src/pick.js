@@ -11,7 +11,9 @@ export class Pick {
     }
 
     clear() {
-        this.at = null;
+        this.at = this.explained = null;
+        this.id = undefined; // no choice of the pixel's
+        this.missed = false;
         this.element.replaceChildren(node("p", { className: "muted", textContent: "Click a pixel to see its plane, or why it has none." }));
     }
 
@@ -19,8 +21,8 @@ export class Pick {
     pick(frame, at) {
         this.at = at;
         const plane = planeAt(frame, at);
-        this.choose(plane?.id ?? null);
-        this.explanation = null;
+        this.explained = null;
+        this.mark(plane);
         if (plane) return this.show(frame);
         this.ask("pause"); // what is explained is what is seen
         this.ask("explain", { serial: frame.serial, at });
@@ -33,14 +35,25 @@ export class Pick {
         if (!this.at) return;
         if (this.at[0] >= frame.map.width || this.at[1] >= frame.map.height) return this.clear();
         const plane = planeAt(frame, this.at);
+        // The frame that was asked about had passed; this is the one at which the video stopped.
+        if (this.missed && frame.serial !== this.explained?.serial) return this.pick(frame, this.at);
         if (!plane && this.explained) return;
         this.explained = null;
+        this.mark(plane);
         showPixel(this.element, frame, this.at, plane, plane ? [] : [node("p", { className: "muted", textContent: "No plane here now." })]);
+    }
+
+    /** Chooses the pixel's plane, once. */
+    mark(plane) {
+        this.missed = false;
+        const id = plane?.id ?? null;
+        if (id !== this.id) this.choose(this.id = id);
     }
 
     /** The server's answer. */
     answer({ at, verdict, findings, suggestions, error }) {
         if (!this.at || at.some((x, i) => x !== this.at[i]) || !this.explained) return;
+        this.missed = Boolean(error);
         const more = error ? [node("p", { className: "verdict", textContent: error })] : [
             node("p", { className: "verdict", textContent: verdict.text }),
             node("div", { className: "try" }, ...suggestions.map(suggestion => this.suggestion(suggestion))),

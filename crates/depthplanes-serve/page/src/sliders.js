@@ -13,13 +13,13 @@ export class Sliders {
 
     /** Makes the rows; `parameters` is the method's table. */
     make(parameters) {
-        this.rows = parameters.map(parameter => this.row(parameter));
+        this.rows = parameters.map((parameter, at) => this.row(parameter, at));
         const button = node("button", { id: "reset-all", textContent: "Reset all" });
         button.onclick = () => this.reset();
         this.element.replaceChildren(...this.rows.map(row => row.element), button);
     }
 
-    row(parameter) {
+    row(parameter, at) {
         const { name, unit, accepted, meaning } = parameter;
         const scale = scaleOf(parameter);
         const title = `${meaning}\nAccepted: ${accepted}. Default: ${parameter.default}.`;
@@ -31,13 +31,18 @@ export class Sliders {
         const element = node("div", { className: "parameter" }, label, number, range, limits);
         element.dataset.name = name;
         range.oninput = () => this.set(name, scale.value(range.value / STEPS));
-        number.onchange = () => number.value !== "" && this.set(name, Number(number.value));
+        number.onchange = () => {
+            const typed = number.value;
+            number.value = written(this.values[at]); // until the server has taken what was typed
+            if (typed !== "") this.set(name, Number(typed));
+        };
         limits.ondblclick = () => this.set(name, parameter.default);
         return { parameter, scale, range, number, element };
     }
 
     /** Shows the values that count now, except where somebody is moving or typing. */
     show(values) {
+        this.values = values;
         this.rows?.forEach(({ parameter, scale, range, number, element }, at) => {
             const value = values[at];
             if (!range.matches(":active")) range.value = Math.round(STEPS * scale.share(value));

@@ -11,7 +11,7 @@ use depthplanes_video::VideoFrame;
 use serde_json::Value;
 use std::time::Instant;
 
-/// A frame that was read, and when that began.
+/// A frame that was read, and when that was done.
 pub(super) struct Read {
     pub(super) start: Instant,
     pub(super) index: u64,

@@ -1,18 +1,21 @@
-//! Results never go over the frames that they are made from.
+//! Results never go over what they are made from.
 
 use crate::args::Track;
 use crate::failure::{Failure, Outcome};
 use depthplanes_io::outputs;
 use depthplanes_video::path_and_topic;
+use std::fs::Metadata;
 use std::path::{Path, PathBuf};
 
-/// Refuses folders of results that are the source, lie in it, or are the same, and a file of lines that is one of the source's.
+/// Refuses folders of results that are the source, lie in it, or are the same, and a file of results that is one of the
+/// source's or that a flag names, under whatever name.
 ///
 /// # Errors
 /// What is wrong, and what to do.
 pub(super) fn check(wanted: &Track) -> Outcome {
     if let Some(path) = wanted.out.as_deref().filter(|path| path.as_os_str() != "-") {
         outputs::check_folder(path)?;
+        check_inputs(wanted, path)?;
     }
     let folders = [("--labels", &wanted.labels), ("--overlays", &wanted.overlays), ("--out", &wanted.out)];
     let given: Vec<(&str, PathBuf)> =
@@ -35,6 +38,48 @@ pub(super) fn check(wanted: &Track) -> Outcome {
         }
         _ => Ok(()),
     }
+}
+
+/// Refuses a file of results that is an input by another name: a link, or the file behind standard input.
+fn check_inputs(wanted: &Track, out: &Path) -> Outcome {
+    let Ok(of_out) = out.metadata() else { return Ok(()) };
+    let source = path_and_topic(&wanted.source).0;
+    let named = [Some(source), wanted.reading.camera.as_deref(), wanted.noise_table.as_deref()];
+    let named = named.into_iter().flatten().map(|path| (path.display().to_string(), path.metadata().ok()));
+    let piped = (wanted.source == "-").then(|| ("standard input".to_string(), standard_input()));
+    let mut inputs = named.chain(piped);
+    let is_it = |(_, input): &(String, Option<Metadata>)| input.as_ref().is_some_and(|input| is_same(input, &of_out));
+    match inputs.find(is_it) {
+        Some((name, _)) => Err(Failure::request(format!(
+            "--out: {} is the file of {name}, which would be lost; accepted: another place",
+            out.display()
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// What is behind standard input.
+#[cfg(unix)]
+fn standard_input() -> Option<Metadata> {
+    use std::os::fd::AsFd;
+    std::fs::File::from(std::io::stdin().as_fd().try_clone_to_owned().ok()?).metadata().ok()
+}
+
+#[cfg(not(unix))]
+fn standard_input() -> Option<Metadata> {
+    None
+}
+
+/// Whether two are one regular file.
+#[cfg(unix)]
+fn is_same(a: &Metadata, b: &Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    a.is_file() && (a.dev(), a.ino()) == (b.dev(), b.ino())
+}
+
+#[cfg(not(unix))]
+fn is_same(_: &Metadata, _: &Metadata) -> bool {
+    false
 }
 
 /// The one path of something that is there.

@@ -1,4 +1,4 @@
-//! How fast frames pass: frames a second, and the latency from a frame's decoding to its end.
+//! How fast frames pass: frames a second, and the latency from when a frame has come to when its results are written.
 
 use std::time::{Duration, Instant};
 

@@ -11,22 +11,32 @@ use std::path::PathBuf;
 /// A file of lines, or standard output.
 pub(super) struct Lines {
     file: Option<(File, PathBuf)>,
+    /// Bytes of the lines that are whole.
+    whole: u64,
 }
 
 impl Lines {
     pub(super) fn new(path: &std::path::Path) -> Outcome<Self> {
         let file = File::create(path).map_err(|error| machine(path, error))?;
-        Ok(Lines { file: Some((file, path.into())) })
+        Ok(Lines { file: Some((file, path.into())), whole: 0 })
     }
 
     pub(super) fn standard() -> Self {
-        Lines { file: None }
+        Lines { file: None, whole: 0 }
     }
 
     fn line(&mut self, text: &str, out: &mut dyn Write) -> Outcome {
         let line = format!("{text}\n");
         match &mut self.file {
-            Some((file, path)) => file.write_all(line.as_bytes()).map_err(|error| machine(path, error)),
+            Some((file, path)) => {
+                file.write_all(line.as_bytes()).map_err(|error| {
+                    // Half a line would keep the others from being read; where it cannot be taken back it stays.
+                    let _ = file.set_len(self.whole);
+                    machine(path, error)
+                })?;
+                self.whole += line.len() as u64;
+                Ok(())
+            }
             None => {
                 out.write_all(line.as_bytes())?;
                 Ok(out.flush()?)
