@@ -19,14 +19,9 @@ fn command() -> Command {
     let defaults = Options::default();
     let topic = |id: &'static str| Arg::new(id).long(id).value_name("TOPIC");
     let listening = [
-        topic("depth")
-            .default_value(defaults.depth)
-            .help("Depth images: 16UC1, mono16 (millimetres) or 32FC1 (metres)"),
+        topic("depth").default_value(defaults.depth).help("Depth images"),
         topic("camera-info").help("Their camera [default: camera_info beside the images]"),
-        Arg::new("name")
-            .long("name")
-            .default_value(defaults.name)
-            .help("The node's name; its topics are ~/labels and so on"),
+        Arg::new("name").long("name").value_name("NAME").default_value(defaults.name).help("The node's name"),
         Arg::new("namespace").long("namespace").default_value(defaults.namespace).help("The node's namespace"),
         Arg::new("floor-frame")
             .long("floor-frame")
@@ -50,19 +45,28 @@ fn command() -> Command {
             .value_name("SENSOR")
             .value_parser(presets)
             .hide_possible_values(true)
-            .help("A known sensor: its noise, and its nominal camera where none is published"),
+            .help("A known sensor: its noise, its nominal camera"),
         numbers::<4>("intrinsics", "FX,FY,CX,CY").help("The camera instead of --camera-info, pixels"),
         number("depth-scale", "METRES").help("Metres in a unit of 16-bit images [default: 0.001]"),
+        Arg::new("rectified")
+            .long("rectified")
+            .value_name("yes|no")
+            .num_args(0..=1)
+            .require_equals(true)
+            .default_missing_value("yes")
+            .value_parser(["yes", "no"])
+            .hide_possible_values(true)
+            .help("Whether lens distortion is ignored, or undone"),
+        number("missing", "VALUE").help("A value that means `missing`, beside 0 and NaN"),
         Arg::new("noise-table")
             .long("noise-table")
             .value_name("FILE")
             .value_parser(value_parser!(PathBuf))
-            .help("The noise of depth as CSV: lines of range,standard deviation in metres"),
+            .help("The noise of depth as CSV: range,deviation in metres"),
     ];
     let ground = [
-        numbers::<3>("up", "X,Y,Z").help("Up in camera coordinates, x right, y down, z ahead; estimated without it"),
-        number("camera-height", "METRES")
-            .help("The camera's height, if it is known: tells the floor from other levels"),
+        numbers::<3>("up", "X,Y,Z").help("Up in the optical frame, 0,-1,0 if level; else estimated"),
+        number("camera-height", "METRES").help("The camera's height, if it is known"),
     ];
     let running = [
         count("kept-frames").help("Frames for which a plane that is not seen keeps its id [default: 30]"),
@@ -75,7 +79,7 @@ fn command() -> Command {
         .value_parser(names)
         .hide_possible_values(true)
         .default_value(defaults.method.name)
-        .help("The method; `depthplanes methods` lists them and their parameters");
+        .help("`depthplanes methods` lists them");
     let under = |heading: &'static str| move |arg: Arg| arg.help_heading(heading);
     Command::new("depthplanes-ros2")
         .about("A ROS 2 node: planes with lasting ids, floor and obstacles of a topic of depth images")
@@ -90,7 +94,7 @@ fn command() -> Command {
 
 /// A flag for each parameter of any method. `-h` shows those that people set.
 fn parameters() -> Vec<Arg> {
-    let shown = ["noise", "noise-growth", "min-pixels"];
+    let shown = ["noise", "min-pixels"];
     let flag = |name: &'static str| {
         let param =
             METHODS.iter().flat_map(|method| method.params).find(|param| param.name == name).expect("it is of them");
@@ -168,6 +172,8 @@ fn read(matches: &ArgMatches) -> Result<ReadOptions, String> {
         preset: matches.get_one("preset").cloned(),
         intrinsics: camera.transpose().map_err(|error| error.to_string())?,
         depth_scale: matches.get_one("depth-scale").copied(),
+        rectified: matches.get_one::<String>("rectified").map(|word| word == "yes"),
+        missing: matches.get_one("missing").copied(),
         noise: table.map_err(|error| error.to_string())?.map(SensorNoise::Table),
         ..ReadOptions::default()
     })

@@ -1,5 +1,7 @@
 //! A domain of its own for each test, the node in it, and a peer that publishes a camera and listens.
 
+#![allow(dead_code, reason = "each test file uses its own part")]
+
 use depthplanes::Intrinsics;
 use depthplanes_ros2::messages::*;
 use ros2_client::dds::rustdds::DomainParticipantBuilder;
@@ -40,13 +42,17 @@ impl Domain {
         format!("{}/camera", self.namespace)
     }
 
-    /// Starts the node.
+    /// Starts the node, which listens to the peer unless the flags name another topic.
     pub fn node(&self, flags: &[&str]) -> Running {
+        let depth = format!("{}/image", self.folder());
+        let own = if flags.contains(&"--depth") { vec![] } else { vec!["--depth", &depth] };
+        self.node_alone(&[&["--namespace", &self.namespace][..], &own, flags].concat())
+    }
+
+    /// Starts the node with these flags; what they do not say of the domain is in the environment.
+    pub fn node_alone(&self, flags: &[&str]) -> Running {
         let mut command = Command::new(PROGRAM);
-        command.args(["--localhost", "--domain-id", &self.id.to_string(), "--namespace", &self.namespace]);
-        if !flags.contains(&"--depth") {
-            command.args(["--depth", &format!("{}/image", self.folder())]);
-        }
+        command.env("ROS_LOCALHOST_ONLY", "1").env("ROS_DOMAIN_ID", self.id.to_string());
         let mut child = command.args(flags).stderr(Stdio::piped()).spawn().unwrap();
         let (mut stderr, said) = (child.stderr.take().unwrap(), Arc::new(Mutex::new(String::new())));
         let heard = Arc::clone(&said);
