@@ -1,7 +1,7 @@
 //! The node: images come, the newest is searched, and what was found is published.
 
 use crate::camera::Camera;
-use crate::messages::{CameraInfo, Header, Image};
+use crate::messages::{CameraInfo, Header, Image, Time};
 use crate::options::Options;
 use crate::outputs::Outputs;
 use crate::patience::Patience;
@@ -42,6 +42,7 @@ pub struct Node {
 /// How many images there were.
 #[derive(Default)]
 struct Counts {
+    taken: u64,
     searched: u64,
     dropped: u64,
     last: Option<(Gid, i64)>,
@@ -132,8 +133,8 @@ impl Node {
     }
 
     fn image(&mut self, image: &Image) {
-        let index = self.counts.searched + self.counts.dropped;
-        self.counts.searched += 1;
+        let index = self.counts.taken + self.counts.dropped;
+        self.counts.taken += 1;
         let frame = match self.frame(image) {
             Ok(Some(frame)) => frame,
             Ok(None) => return self.patience.lacks_camera(),
@@ -141,13 +142,15 @@ impl Node {
         };
         self.patience.has_camera();
         frame.warnings.iter().for_each(|warning| self.once.note(warning));
-        let stamp = image.header.stamp;
-        let time_s = f64::from(stamp.sec) + 1e-9 * f64::from(stamp.nanosec);
+        let Time { sec, nanosec } = image.header.stamp;
+        let time_s = f64::from(sec) + 1e-9 * f64::from(nanosec);
+        let time_s = (time_s != 0.0).then_some(time_s); // one that is all 0 was set by nobody
         let name = self.options.depth.clone();
-        let video = VideoFrame { index, name, time_s: Some(time_s), pose: None, up: None, frame };
+        let video = VideoFrame { index, name, time_s, pose: None, up: None, frame };
         let up = self.search.up();
         match self.search.search(&video.frame) {
             Ok(found) => {
+                self.counts.searched += 1;
                 if found.is_renumbered {
                     note("ids begin at 1 again, since label images hold none above 65535");
                 }
