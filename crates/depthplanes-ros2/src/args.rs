@@ -12,7 +12,35 @@ use std::path::PathBuf;
 
 /// What is wanted, of the words and of the environment; ends the program for `--help` and what is wrong.
 pub(crate) fn parse() -> Result<Options, String> {
-    from_matches(&command().get_matches())
+    let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
+    from_matches(&command().get_matches_from(flags(words)?))
+}
+
+/// The words with those behind `--ros-args` as flags: `-r __node:=NAME`, `-r depth:=/TOPIC`, `-p min_pixels:=500`.
+fn flags(mut words: impl Iterator<Item = String>) -> Result<Vec<String>, String> {
+    let (mut flags, mut is_ros) = (Vec::new(), false);
+    while let Some(word) = words.next() {
+        match word.as_str() {
+            "--ros-args" => is_ros = true,
+            "--" if is_ros => is_ros = false,
+            "-r" | "--remap" | "-p" | "--param" if is_ros => flags.push(flag(&words.next().unwrap_or_default())?),
+            _ if is_ros => return Err(format!("--ros-args {word}; accepted: -r NAME:=VALUE and -p NAME:=VALUE")),
+            _ => flags.push(word),
+        }
+    }
+    Ok(flags)
+}
+
+fn flag(assignment: &str) -> Result<String, String> {
+    let (name, value) = assignment.split_once(":=").ok_or_else(|| {
+        format!("--ros-args: `{assignment}`; accepted: NAME:=VALUE, such as __node:=NAME, __ns:=/NAME, depth:=/TOPIC")
+    })?;
+    let name = match name {
+        "__node" => "name",
+        "__ns" => "namespace",
+        name => name,
+    };
+    Ok(format!("--{}={value}", name.replace('_', "-")))
 }
 
 fn command() -> Command {
@@ -177,4 +205,20 @@ fn read(matches: &ArgMatches) -> Result<ReadOptions, String> {
         noise: table.map_err(|error| error.to_string())?.map(SensorNoise::Table),
         ..ReadOptions::default()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::flags;
+
+    #[test]
+    fn words_behind_ros_args_are_flags() {
+        let of = |words: &str| flags(words.split(' ').map(String::from)).map(|flags| flags.join(" "));
+        assert_eq!(
+            of("node --threads 2 --ros-args -r __ns:=/a --remap __node:=b -p min_pixels:=9 -- --localhost").unwrap(),
+            "node --threads 2 --namespace=/a --name=b --min-pixels=9 --localhost"
+        );
+        assert!(of("node --ros-args --log-level debug").unwrap_err().contains("accepted: -r NAME:=VALUE"));
+        assert!(of("node --ros-args -r depth=/x").unwrap_err().contains("accepted: NAME:=VALUE"));
+    }
 }

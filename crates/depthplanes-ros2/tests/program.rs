@@ -46,8 +46,9 @@ fn the_commands_of_the_page_start_the_node() {
         let words: Vec<&str> = command.split_whitespace().collect();
         let mut node = Domain::new().node_alone(&words);
         let said = said_within(&mut node, Duration::from_secs(60), " waits for images on ", || ());
-        let depth =
-            words.iter().position(|word| *word == "--depth").map_or("/camera/depth/image_rect_raw", |at| words[at + 1]);
+        let flag = words.iter().position(|word| *word == "--depth").map(|at| words[at + 1]);
+        let remap = words.iter().find_map(|word| word.strip_prefix("depth:="));
+        let depth = flag.or(remap).unwrap_or("/camera/depth/image_rect_raw");
         assert!(said.contains(depth), "{command}: {said}");
         assert!(node.end().contains("0 images were searched, 0 were dropped"), "{command}");
     }
