@@ -98,7 +98,8 @@ package: ## Make the packages of all crates and build each from what is in it
 # The program has the library's name, so its own page is left out.
 rustdoc:
 	$(call say,documentation)
-	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --no-deps --package depthplanes --package depthplanes-io --package depthplanes-video --package depthplanes-serve --features depthplanes-io/exr
+	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --no-deps --package depthplanes --package depthplanes-io --package depthplanes-video --package depthplanes-serve \
+		--package depthplanes-ros2 --features depthplanes-io/exr
 
 targets: ## Check that the library compiles for WebAssembly, 64-bit ARM and 32-bit x86
 	$(call say,other targets)

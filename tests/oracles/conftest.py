@@ -36,6 +36,14 @@ def program():
 
 
 @pytest.fixture(scope="session")
+def ros2_program():
+    """The node for ROS 2 as `make test` has built it already; a release of it takes minutes."""
+    command = "cargo build --workspace --profile test --features depthplanes/serde --bin depthplanes-ros2"
+    subprocess.run(command.split(), cwd=ROOT, check=True)
+    return ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "debug" / "depthplanes-ros2"
+
+
+@pytest.fixture(scope="session")
 def data():
     """The folder of real maps; without it a test is skipped, on CI it fails."""
     folder = pathlib.Path(os.environ.get("DEPTHPLANES_DATA", ROOT.parent / "shared" / "data"))

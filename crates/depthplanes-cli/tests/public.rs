@@ -272,9 +272,13 @@ fn list_module(sources: &Sources, module: &Module, place: &str, lines: &mut BTre
 
 #[test]
 fn the_public_items_are_those_of_the_lists() {
-    for (name, least) in
-        [("depthplanes", 100), ("depthplanes-io", 100), ("depthplanes-video", 20), ("depthplanes-serve", 20)]
-    {
+    for (name, least) in [
+        ("depthplanes", 100),
+        ("depthplanes-io", 100),
+        ("depthplanes-video", 20),
+        ("depthplanes-serve", 20),
+        ("depthplanes-ros2", 20),
+    ] {
         let folder: PathBuf = [env!("CARGO_MANIFEST_DIR"), "..", name].iter().collect();
         let mut lines = BTreeSet::new();
         list_module(&Sources::of(&folder.join("src")), &Module::new(), &name.replace('-', "_"), &mut lines);

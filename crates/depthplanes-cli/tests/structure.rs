@@ -87,12 +87,15 @@ fn unsafe_code_stands_in_the_kernels_alone() {
     assert_eq!(files_with("crates/depthplanes-video/src", &["unsafe "]), [""; 0]);
     assert_eq!(files_with("crates/depthplanes-serve/src", &["unsafe "]), [""; 0]);
     assert_eq!(files_with("crates/depthplanes-cli/src", &["unsafe "]), [""; 0]);
+    assert_eq!(files_with("crates/depthplanes-ros2/src", &["unsafe "]), [""; 0]);
 }
 
 #[test]
 fn the_argument_parser_is_known_to_one_module() {
-    for name in files_with("crates/depthplanes-cli/src", &["clap"]) {
-        assert!(name == "args.rs" || name.starts_with("args/"), "{name}");
+    for krate in ["depthplanes-cli", "depthplanes-ros2"] {
+        for name in files_with(&format!("crates/{krate}/src"), &["clap"]) {
+            assert!(name == "args.rs" || name.starts_with("args/"), "{name}");
+        }
     }
 }
 
@@ -112,7 +115,14 @@ fn the_tests_that_the_architecture_names_exist() {
 
 #[test]
 fn nobody_but_tests_and_benchmarks_asks_for_stages_by_themselves() {
-    for krate in ["depthplanes", "depthplanes-io", "depthplanes-video", "depthplanes-serve", "depthplanes-cli"] {
+    for krate in [
+        "depthplanes",
+        "depthplanes-io",
+        "depthplanes-video",
+        "depthplanes-serve",
+        "depthplanes-cli",
+        "depthplanes-ros2",
+    ] {
         let folder = &format!("crates/{krate}/src");
         assert_eq!(files_with(folder, &["::internals"]), [""; 0], "{folder}");
     }

@@ -18,14 +18,17 @@ pub mod mcap;
 mod messages;
 pub mod natural;
 mod pose_text;
+pub mod ros;
 mod source;
 mod sources;
+mod tracked;
 mod word;
 
 pub use error::{Error, Result};
 pub use frame::VideoFrame;
 pub use source::{Source, SourceInfo, SourceOptions};
 pub use sources::{SOURCES, open};
+pub use tracked::{Tracked, failed_record};
 pub use word::path_and_topic;
 
 /// The program of the page on video is a documentation test.

@@ -3,7 +3,6 @@
 //! In: maps, as `detect` takes them, and what is known of up. Out: a table for people or a JSON record.
 
 mod files;
-pub(super) mod record;
 mod table;
 
 use crate::args::Floor;
@@ -72,7 +71,7 @@ impl Work<'_> {
             note(&format!("{name}: {}", table::no_floor(&found.detection, self.up)));
         }
         let text = if self.wanted.json {
-            let record = record::record(&name, ground, self.up);
+            let record = outputs::ground_record(&name, ground, self.up);
             if self.alone { format!("{record:#}\n") } else { format!("{record}\n") }
         } else {
             let planes = &found.detection.planes;

@@ -9,7 +9,6 @@ mod folders;
 mod follow;
 mod pace;
 mod queue;
-mod record;
 mod stall;
 mod watch;
 mod writer;

@@ -1,5 +1,6 @@
 //! What a message says, whatever its encoding.
 
+use depthplanes_io::camera_file::{CameraFile, parse};
 use std::borrow::Cow;
 
 /// A message with a depth map or a camera.
@@ -22,25 +23,48 @@ pub(crate) enum Content<'a> {
     Camera(String),
 }
 
-/// Numbers of a camera that ROS and Foxglove alike have.
-#[derive(Default)]
-pub(super) struct CameraNumbers {
-    pub(super) width: u32,
-    pub(super) height: u32,
-    pub(super) distortion_model: String,
-    pub(super) d: Vec<f64>,
-    pub(super) k: Vec<f64>,
-    pub(super) r: Vec<f64>,
-    pub(super) p: Vec<f64>,
-    /// In x and y; ROS alone has it, as the region.
-    pub(super) binning: [u32; 2],
-    /// Left column, top row, width and height.
-    pub(super) region: [u32; 4],
+/// `sensor_msgs/msg/CameraInfo`, and what other messages of cameras have of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CameraInfo {
+    /// Columns of the picture that it is for.
+    pub width: u32,
+    /// Rows of that picture.
+    pub height: u32,
+    /// `plumb_bob`, `rational_polynomial`, `equidistant` and the like.
+    pub distortion_model: String,
+    /// Its coefficients.
+    pub d: Vec<f64>,
+    /// The camera matrix, 3 x 3, row by row.
+    pub k: Vec<f64>,
+    /// The turn of a stereo camera's rectification, 3 x 3.
+    pub r: Vec<f64>,
+    /// The projection of the rectified picture, 3 x 4.
+    pub p: Vec<f64>,
+    /// Pixels in one, along x and y; 0 is 1.
+    pub binning: [u32; 2],
+    /// The part of the sensor: left column, top row, width and height; all 0 for the whole.
+    pub region: [u32; 4],
 }
 
-impl CameraNumbers {
+impl CameraInfo {
+    /// The camera, as one in a file.
+    ///
+    /// # Errors
+    /// Those of [`parse`]: a message that no calibration filled in, a model that is not known.
+    ///
+    /// ```
+    /// use depthplanes_video::ros::CameraInfo;
+    /// let k = vec![580.0, 0.0, 319.5, 0.0, 580.0, 239.5, 0.0, 0.0, 1.0];
+    /// let message = CameraInfo { width: 640, height: 480, distortion_model: "plumb_bob".into(), k, ..CameraInfo::default() };
+    /// assert_eq!(message.camera()?.intrinsics.cx, 319.5);
+    /// # Ok::<(), depthplanes_io::Error>(())
+    /// ```
+    pub fn camera(&self) -> depthplanes_io::Result<CameraFile> {
+        parse(&self.json())
+    }
+
     /// As the reader of camera files takes it.
-    pub(super) fn json(&self) -> Content<'static> {
+    pub(super) fn json(&self) -> String {
         let [x_offset, y_offset, width, height] = self.region;
         let camera = serde_json::json!({
             "width": self.width, "height": self.height, "distortion_model": self.distortion_model,
@@ -48,7 +72,7 @@ impl CameraNumbers {
             "binning_x": self.binning[0], "binning_y": self.binning[1],
             "roi": {"x_offset": x_offset, "y_offset": y_offset, "width": width, "height": height},
         });
-        Content::Camera(camera.to_string())
+        camera.to_string()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Foxglove's messages in Protobuf (<https://docs.foxglove.dev/docs/sdk/schemas>).
 
-use super::content::{CameraNumbers, Content, Message, seconds};
+use super::content::{CameraInfo, Content, Message, seconds};
 use super::wire::{Wire, fields};
 
 /// `google.protobuf.Timestamp`.
@@ -50,7 +50,7 @@ pub(super) fn compressed_image(bytes: &[u8]) -> Result<Message<'_>, String> {
 }
 
 pub(super) fn camera_calibration(bytes: &[u8]) -> Result<Message<'_>, String> {
-    let (mut stamp_s, mut frame_id, mut camera) = (None, String::new(), CameraNumbers::default());
+    let (mut stamp_s, mut frame_id, mut camera) = (None, String::new(), CameraInfo::default());
     for field in fields(bytes) {
         match field? {
             (1, value) => stamp_s = stamp(value)?,
@@ -65,5 +65,5 @@ pub(super) fn camera_calibration(bytes: &[u8]) -> Result<Message<'_>, String> {
             _ => (),
         }
     }
-    Ok(Message { stamp_s, frame_id, content: camera.json() })
+    Ok(Message { stamp_s, frame_id, content: Content::Camera(camera.json()) })
 }

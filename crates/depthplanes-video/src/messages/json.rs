@@ -1,6 +1,6 @@
 //! Foxglove's messages in JSON, bytes in base64.
 
-use super::content::{CameraNumbers, Content, Message, seconds};
+use super::content::{CameraInfo, Content, Message, seconds};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
@@ -51,7 +51,7 @@ pub(super) fn camera_calibration(bytes: &[u8]) -> Result<Message<'_>, String> {
     let numbers = |name: &str| -> Vec<f64> {
         value[name].as_array().into_iter().flatten().map(|number| number.as_f64().unwrap_or(f64::NAN)).collect()
     };
-    let camera = CameraNumbers {
+    let camera = CameraInfo {
         width: whole(&value, "width")?,
         height: whole(&value, "height")?,
         distortion_model: value["distortion_model"].as_str().unwrap_or_default().to_string(),
@@ -59,7 +59,7 @@ pub(super) fn camera_calibration(bytes: &[u8]) -> Result<Message<'_>, String> {
         k: numbers("K"),
         r: numbers("R"),
         p: numbers("P"),
-        ..CameraNumbers::default()
+        ..CameraInfo::default()
     };
-    Ok(Message { stamp_s, frame_id, content: camera.json() })
+    Ok(Message { stamp_s, frame_id, content: Content::Camera(camera.json()) })
 }

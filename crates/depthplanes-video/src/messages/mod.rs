@@ -8,6 +8,7 @@ mod picture;
 mod ros;
 mod wire;
 
+pub use content::CameraInfo;
 pub(crate) use content::{Content, Message};
 pub(crate) use picture::{depth_form, frame};
 

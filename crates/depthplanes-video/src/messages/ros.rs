@@ -1,7 +1,7 @@
 //! ROS 2: `sensor_msgs/msg/Image`, `CompressedImage` and `CameraInfo`, in CDR.
 
 use super::cdr::Cdr;
-use super::content::{CameraNumbers, Content, Message, seconds};
+use super::content::{CameraInfo, Content, Message, seconds};
 
 fn header(cdr: &mut Cdr<'_>) -> Result<(Option<f64>, String), String> {
     let stamp_s = seconds((cdr.u32()? as i32).into(), cdr.u32()?);
@@ -39,6 +39,6 @@ pub(super) fn camera_info(bytes: &[u8]) -> Result<Message<'_>, String> {
     let binning = [cdr.u32()?, cdr.u32()?];
     let [x, y, rows, columns] = [cdr.u32()?, cdr.u32()?, cdr.u32()?, cdr.u32()?];
     let region = [x, y, columns, rows];
-    let camera = CameraNumbers { width, height, distortion_model, d, k, r, p, binning, region };
-    Ok(Message { stamp_s, frame_id, content: camera.json() })
+    let camera = CameraInfo { width, height, distortion_model, d, k, r, p, binning, region };
+    Ok(Message { stamp_s, frame_id, content: Content::Camera(camera.json()) })
 }

@@ -56,6 +56,29 @@ impl CameraPose {
         self.translation_m
     }
 
+    /// The rotation as a unit quaternion x, y, z, w (Shepperd 1978: the largest of the four is found first, and the others by
+    /// it).
+    pub fn quaternion(&self) -> [f64; 4] {
+        let r = &self.rotation;
+        let squares = [
+            1.0 + r[0][0] - r[1][1] - r[2][2],
+            1.0 - r[0][0] + r[1][1] - r[2][2],
+            1.0 - r[0][0] - r[1][1] + r[2][2],
+            1.0 + r[0][0] + r[1][1] + r[2][2],
+        ];
+        let largest = (0..4).max_by(|&a, &b| squares[a].total_cmp(&squares[b])).expect("there are four");
+        let [xy, xz, yz] = [r[1][0] + r[0][1], r[0][2] + r[2][0], r[2][1] + r[1][2]];
+        let [xw, yw, zw] = [r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]];
+        let own = squares[largest];
+        let q = match largest {
+            0 => [own, xy, xz, xw],
+            1 => [xy, own, yz, yw],
+            2 => [xz, yz, own, zw],
+            _ => [xw, yw, zw, own],
+        };
+        q.map(|part| 0.5 * part / own.sqrt())
+    }
+
     /// A direction of the world in camera coordinates.
     pub fn to_camera(&self, direction: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|k| (0..3).map(|row| self.rotation[row][k] * direction[row]).sum())
@@ -152,6 +175,22 @@ mod tests {
                 assert!((world(&before, point)[k] - world(&after, seen)[k]).abs() < 1e-12);
             }
             assert!((dot(moved.normal, seen) + moved.distance).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn quaternions_turn_as_their_matrices_do() {
+        let half = 0.5f64.sqrt();
+        for (matrix, expected) in [
+            ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.0, 0.0, 0.0, 1.0]),
+            ([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]], [1.0, 0.0, 0.0, 0.0]),
+            ([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], [0.0, 0.0, half, half]),
+            ([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]], [0.0, half, half, 0.0]),
+            ([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]], [0.5, -0.5, 0.5, -0.5]),
+        ] {
+            let found = CameraPose::new(matrix, [0.0; 3]).unwrap().quaternion();
+            let apart = |sign: f64| found.iter().zip(expected).map(|(a, b)| (a - sign * b).abs()).fold(0.0, f64::max);
+            assert!(apart(1.0).min(apart(-1.0)) < 1e-12, "{matrix:?}: {found:?}");
         }
     }
 

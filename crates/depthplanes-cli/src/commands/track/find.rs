@@ -1,7 +1,6 @@
 //! Frames become planes and, if it is wanted, the ground. Each thread has a finder of its own; no frame knows another.
 
 use crate::args::Track;
-use crate::commands::floor::record as floor_record;
 use crate::failure::{Failure, Outcome};
 use crate::run::{Recipe, Runner};
 use depthplanes::Detection;
@@ -87,6 +86,6 @@ impl<'a> Finder<'a> {
         let found = self.ground.find(view, detection, sensor)?;
         let picture = || outputs::ground_png(view, sensor, detection, found);
         let png = self.wanted.overlays.as_ref().map(|_| picture()).transpose()?;
-        Ok(Ground { record: floor_record::record(name, found, known), png })
+        Ok(Ground { record: outputs::ground_record(name, found, known), png })
     }
 }

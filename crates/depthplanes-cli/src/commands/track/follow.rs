@@ -6,7 +6,7 @@ use crate::args::Track;
 use crate::failure::Outcome;
 use depthplanes::Detection;
 use depthplanes::track::{Tracker, Tracks};
-use depthplanes_video::VideoFrame;
+use depthplanes_video::{Tracked, VideoFrame};
 use std::time::Instant;
 
 /// What is known of a frame in the end.
@@ -19,6 +19,14 @@ pub(super) struct Followed {
     pub(super) ground: Option<Ground>,
     /// Frames that were dropped before this one.
     pub(super) dropped: u64,
+}
+
+impl Followed {
+    /// As outputs take it.
+    pub(super) fn tracked(&self) -> Tracked<'_> {
+        let Followed { video, detection, tracks, ground, dropped, .. } = self;
+        Tracked { video, detection, tracks, ground: ground.as_ref().map(|ground| &ground.record), dropped: *dropped }
+    }
 }
 
 /// Follows the planes of one source.

@@ -2,7 +2,6 @@
 //!
 //! One file for each output; [`Writer`] hands every frame to those that are wanted.
 
-mod ids;
 mod images;
 mod lines;
 mod mcap;

@@ -1,6 +1,5 @@
 //! A label image, or a picture, for each frame.
 
-use super::ids::by_id;
 use super::output::{Output, machine};
 use crate::commands::track::follow::Followed;
 use crate::failure::Outcome;
@@ -30,7 +29,7 @@ impl Labels {
 impl Output for Labels {
     fn write(&mut self, frame: &Followed, _: &mut dyn Write) -> Outcome {
         let found = &frame.detection;
-        let png = grey16_png(found.width, found.height, &by_id(frame)?);
+        let png = grey16_png(found.width, found.height, &frame.tracked().labels()?);
         Ok(outputs::write_file(&file(&self.0, frame), &png)?)
     }
 }

@@ -2,8 +2,8 @@
 
 use super::output::{Output, machine};
 use crate::commands::track::follow::Followed;
-use crate::commands::track::record;
 use crate::failure::Outcome;
+use depthplanes_video::failed_record;
 use std::fs::File;
 use std::io::Write;
 use std::path::PathBuf;
@@ -47,10 +47,10 @@ impl Lines {
 
 impl Output for Lines {
     fn write(&mut self, frame: &Followed, out: &mut dyn Write) -> Outcome {
-        self.line(&record::record(frame).to_string(), out)
+        self.line(&frame.tracked().record().to_string(), out)
     }
 
     fn write_failed(&mut self, index: u64, error: &str, out: &mut dyn Write) -> Outcome {
-        self.line(&record::failed(index, error).to_string(), out)
+        self.line(&failed_record(index, error).to_string(), out)
     }
 }

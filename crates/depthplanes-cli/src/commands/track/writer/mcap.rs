@@ -4,12 +4,11 @@
 //! descriptions, `assets/foxglove.binpb`, are those of the Python package foxglove-schemas-protobuf (MIT, by Foxglove);
 //! `tests/oracles/test_mcap.py` compares and renews them. The planes' record is JSON, the same as in `.jsonl`.
 
-use super::ids::by_id;
 use super::output::{Output, machine};
 use super::scene::{self, Scene};
 use crate::commands::track::follow::Followed;
-use crate::commands::track::record;
 use crate::failure::Outcome;
+use depthplanes_video::failed_record;
 use depthplanes_video::mcap::{Topic, Writer};
 use std::fs::File;
 use std::io::Write;
@@ -81,8 +80,8 @@ impl Output for Recording {
     fn write(&mut self, frame: &Followed, _: &mut dyn Write) -> Outcome {
         let time = self.time_ns(frame.video.time_s);
         let (sensor, size) = (&frame.video.frame.sensor, [frame.detection.width, frame.detection.height]);
-        let planes = record::record(frame).to_string();
-        let labels = scene::label_image(&by_id(frame)?, size, time);
+        let planes = frame.tracked().record().to_string();
+        let labels = scene::label_image(&frame.tracked().labels()?, size, time);
         let scene = self.scene.update(frame, time)?;
         let transform = scene::transform(frame.video.pose.as_ref(), time);
         let camera = scene::calibration(sensor, size, time);
@@ -95,7 +94,7 @@ impl Output for Recording {
 
     fn write_failed(&mut self, index: u64, error: &str, _: &mut dyn Write) -> Outcome {
         let time = self.time_ns(None);
-        self.chunk(&[(PLANES, time, record::failed(index, error).to_string().as_bytes())])
+        self.chunk(&[(PLANES, time, failed_record(index, error).to_string().as_bytes())])
     }
 
     fn end(&mut self, _: &mut dyn Write) -> Outcome {

@@ -131,50 +131,9 @@ fn lens(sensor: &Sensor) -> (&'static str, Vec<f64>) {
 
 /// `foxglove.FrameTransform` of the camera in the world.
 pub(super) fn transform(pose: Option<&CameraPose>, time_ns: u64) -> Vec<u8> {
-    let forward = [[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]];
-    let (rotation, translation) = pose.map_or((forward, [0.0; 3]), |pose| (pose.rotation(), pose.translation_m()));
+    // x right, y down and z ahead, turned to z up and x ahead.
+    let forward = ([-0.5, 0.5, -0.5, 0.5], [0.0; 3]);
+    let (rotation, translation) = pose.map_or(forward, |pose| (pose.quaternion(), pose.translation_m()));
     let message = Proto::default().message(1, stamp(time_ns)).text(2, WORLD).text(3, CAMERA);
-    message.message(4, Proto::of(&translation)).message(5, Proto::of(&quaternion(rotation))).into_bytes()
-}
-
-/// x, y, z, w of a rotation (Shepperd 1978: the largest of the four is found first, and the others by it).
-fn quaternion(r: [[f64; 3]; 3]) -> [f64; 4] {
-    let squares = [
-        1.0 + r[0][0] - r[1][1] - r[2][2],
-        1.0 - r[0][0] + r[1][1] - r[2][2],
-        1.0 - r[0][0] - r[1][1] + r[2][2],
-        1.0 + r[0][0] + r[1][1] + r[2][2],
-    ];
-    let largest = (0..4).max_by(|&a, &b| squares[a].total_cmp(&squares[b])).expect("there are four");
-    let [xy, xz, yz] = [r[1][0] + r[0][1], r[0][2] + r[2][0], r[2][1] + r[1][2]];
-    let [xw, yw, zw] = [r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]];
-    let own = squares[largest];
-    let q = match largest {
-        0 => [own, xy, xz, xw],
-        1 => [xy, own, yz, yw],
-        2 => [xz, yz, own, zw],
-        _ => [xw, yw, zw, own],
-    };
-    q.map(|part| 0.5 * part / own.sqrt())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::quaternion;
-
-    #[test]
-    fn quaternions_turn_as_their_matrices_do() {
-        let half = 0.5f64.sqrt();
-        for (matrix, expected) in [
-            ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.0, 0.0, 0.0, 1.0]),
-            ([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]], [1.0, 0.0, 0.0, 0.0]),
-            ([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], [0.0, 0.0, half, half]),
-            ([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]], [0.0, half, half, 0.0]),
-            ([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]], [0.5, -0.5, 0.5, -0.5]),
-        ] {
-            let found = quaternion(matrix);
-            let apart = |sign: f64| found.iter().zip(expected).map(|(a, b)| (a - sign * b).abs()).fold(0.0, f64::max);
-            assert!(apart(1.0).min(apart(-1.0)) < 1e-12, "{matrix:?}: {found:?}");
-        }
-    }
+    message.message(4, Proto::of(&translation)).message(5, Proto::of(&rotation)).into_bytes()
 }

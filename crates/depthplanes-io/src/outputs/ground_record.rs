@@ -3,8 +3,9 @@
 use depthplanes::ground::{ClassifiedPlane, Floor, Ground, Obstacle, Sector, Step, Up};
 use serde_json::{Value, json};
 
-/// The record of one input; `floor` is null where there is none.
-pub(in crate::commands) fn record(source: &str, ground: &Ground, up: Up) -> Value {
+/// The ground of one input as JSON, `depthplanes.floor/1`; `floor` is null where there is none. `source` is what the input is
+/// called, `up` what was known of up.
+pub fn ground_record(source: &str, ground: &Ground, up: Up) -> Value {
     json!({
         "schema": "depthplanes.floor/1",
         "source": source,
