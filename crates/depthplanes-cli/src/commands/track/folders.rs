@@ -15,7 +15,6 @@ use std::path::{Path, PathBuf};
 pub(super) fn check(wanted: &Track) -> Outcome {
     if let Some(path) = wanted.out.as_deref().filter(|path| path.as_os_str() != "-") {
         outputs::check_folder(path)?;
-        check_inputs(wanted, path)?;
     }
     let folders = [("--labels", &wanted.labels), ("--overlays", &wanted.overlays), ("--out", &wanted.out)];
     let given: Vec<(&str, PathBuf)> =
@@ -29,6 +28,9 @@ pub(super) fn check(wanted: &Track) -> Outcome {
                  accepted: a place outside of the source, or one that is new"
             )));
         }
+    }
+    if let Some(path) = &wanted.out {
+        check_inputs(wanted, path)?;
     }
     match (&wanted.labels, &wanted.overlays) {
         (Some(labels), Some(overlays))
