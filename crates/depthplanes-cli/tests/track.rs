@@ -87,6 +87,12 @@ fn up_in_the_world_of_the_poses_is_up_in_every_frame() {
         assert!(row.iter().zip(up).all(|(a, b)| (a.as_f64().unwrap() - b.as_f64().unwrap()).abs() < 1e-9), "{of_pose}");
     }
     let words =
+        ["track", "scene:robot:seed=5001,size=320x240,frames=2", "--floor", "--world-up", "0,0,-1", "--out", "-"];
+    let ran = bench.run(&words);
+    assert!(ran.code == Some(0), "{}", ran.err);
+    assert!(ran.err.contains("no frame has a floor with the up that --world-up states"), "{}", ran.err);
+    assert!(known.iter().all(|line| line["ground"]["floor"].is_object()), "the right one has a floor");
+    let words =
         ["track", "scene:boxes:frames=1,pose=none,size=160x120", "--floor", "--world-up", "0,0,1", "--out", "-"];
     let ran = bench.run(&words);
     assert!(ran.code == Some(2) && ran.err.contains("has no pose; state --up"), "{}", ran.err);

@@ -288,6 +288,14 @@ pub(super) fn switch(id: &'static str, help: &'static str) -> Arg {
 /// More inputs at once, threads, runs or rows than anybody means.
 const MOST: usize = 1_000_000;
 
+/// The source of a video.
+pub(super) fn source() -> Arg {
+    Arg::new("source").value_name("SOURCE").required(true).help(
+        "A folder of maps, of TUM RGB-D, 7-Scenes or rosbag2; FILE.mcap or FILE.mcap:/topic; - for raw frames on standard \
+         input; scene:SPEC for a synthetic camera",
+    )
+}
+
 /// A flag that takes a whole number from 1 to [`MOST`].
 pub(super) fn count(id: &'static str, value: &'static str) -> Arg {
     Arg::new(id).long(id).value_name(value).value_parser(|text: &str| match text.parse::<usize>() {

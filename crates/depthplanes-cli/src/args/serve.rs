@@ -29,9 +29,6 @@ const PORT: &str = "7878";
 
 /// The command; `method` has the flags of the method.
 pub(super) fn command(method: Vec<Arg>) -> Command {
-    let source = Arg::new("source").value_name("SOURCE").required(true).help(
-        "A folder of maps, of TUM RGB-D or of 7-Scenes; - for raw frames on standard input; scene:SPEC for a synthetic camera",
-    );
     let page = [
         Arg::new("port")
             .long("port")
@@ -58,7 +55,7 @@ pub(super) fn command(method: Vec<Arg>) -> Command {
     let under = |heading: &'static str| move |arg: Arg| arg.help_heading(heading);
     Command::new("serve")
         .about("Shows depth video live in a browser: planes, floor, obstacles; sliders act at once")
-        .arg(source)
+        .arg(flags::source())
         .args(page.map(under("Page")))
         .args(outputs::ground_flags().map(under("Ground")))
         .args(flags::reading())

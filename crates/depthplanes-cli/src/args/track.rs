@@ -37,10 +37,6 @@ pub(crate) struct Track {
 
 /// The command; `method` has the flags of the method.
 pub(super) fn command(method: Vec<Arg>) -> Command {
-    let source = Arg::new("source").value_name("SOURCE").required(true).help(
-        "A folder of maps, of TUM RGB-D, 7-Scenes or rosbag2; FILE.mcap or FILE.mcap:/topic; - for raw frames on standard \
-         input; scene:SPEC for a synthetic camera",
-    );
     let output = [
         flags::path("out", "FILE").help(
             "Write a JSON line for each frame (.jsonl, or - for standard output), or a recording for Foxglove (.mcap)",
@@ -67,7 +63,7 @@ pub(super) fn command(method: Vec<Arg>) -> Command {
     let under = |heading: &'static str| move |arg: Arg| arg.help_heading(heading);
     Command::new("track")
         .about("Follows planes through depth video: lasting ids, floor and obstacles frame by frame")
-        .arg(source)
+        .arg(flags::source())
         .args(output.map(under("Output")))
         .args(outputs::ground_flags().map(|arg| arg.requires("floor")).map(under("Ground")))
         .arg(world_up.help_heading("Ground"))

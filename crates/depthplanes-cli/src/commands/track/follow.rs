@@ -39,7 +39,7 @@ pub(super) struct Follower {
 impl Follower {
     pub(super) fn new(wanted: &Track) -> Self {
         let tracker = wanted.kept_frames.map_or_else(Tracker::default, |frames| Tracker::default().kept_frames(frames));
-        Follower { tracker, ignore_poses: wanted.ignore_poses, watch: Watch::default() }
+        Follower { tracker, ignore_poses: wanted.ignore_poses, watch: Watch::new(wanted) }
     }
 
     /// The planes of the next frame.
@@ -51,6 +51,7 @@ impl Follower {
         let (mut video, found) = outcome?;
         self.watch.look(&video);
         let Found { detection, ground } = found?;
+        ground.iter().for_each(|ground| self.watch.look_at_ground(ground));
         video.pose = video.pose.filter(|_| !self.ignore_poses);
         let tracks = self.tracker.track(&detection, &video.frame.sensor, video.pose.as_ref())?.clone();
         Ok(Followed { start, video, detection, tracks, ground, dropped })

@@ -1,5 +1,7 @@
-//! What a person should know of a source while it runs: sizes that change, time that jumps, notes on its maps.
+//! What a person should know of a source while it runs: sizes that change, time that jumps, notes on its maps, no floor.
 
+use super::find::Ground;
+use crate::args::Track;
 use crate::failure::note;
 use depthplanes_video::VideoFrame;
 use std::collections::BTreeSet;
@@ -16,10 +18,25 @@ pub(super) struct Watch {
     time_s: Option<f64>,
     step_s: Option<f64>,
     jumps: u64,
+    /// The flag that states up, if one does.
+    up_by: Option<&'static str>,
+    /// Frames in which a floor was looked for, and those in which there is one.
+    floors: [u64; 2],
     said: BTreeSet<String>,
 }
 
 impl Watch {
+    pub(super) fn new(wanted: &Track) -> Self {
+        let up_by = wanted.world_up.map(|_| "--world-up").or(wanted.up.map(|_| "--up"));
+        Watch { up_by, ..Watch::default() }
+    }
+
+    /// Counts whether there is a floor.
+    pub(super) fn look_at_ground(&mut self, ground: &Ground) {
+        self.floors[0] += 1;
+        self.floors[1] += u64::from(!ground.record["floor"].is_null());
+    }
+
     pub(super) fn look(&mut self, frame: &VideoFrame) {
         let (name, size) = (&frame.name, [frame.frame.width, frame.frame.height]);
         if let Some([width, height]) = self.size.replace(size).filter(|before| *before != size) {
@@ -49,8 +66,12 @@ impl Watch {
         }
     }
 
-    /// Says how much was not said.
+    /// Says how much was not said, and where what was stated finds nothing.
     pub(super) fn end(&self) {
+        let [frames, floors] = self.floors;
+        if let Some(flag) = self.up_by.filter(|_| frames > 0 && floors == 0) {
+            note(&format!("no frame has a floor with the up that {flag} states; without it up is estimated"));
+        }
         if self.jumps > MOST {
             note(&format!("time jumped {} more times", self.jumps - MOST));
         }
