@@ -47,9 +47,8 @@ pub(crate) fn tidy_up_if_interrupted() {}
 pub(crate) fn interruption() -> &'static AtomicI32 {
     static SIGNAL: AtomicI32 = AtomicI32::new(0);
     #[cfg(unix)]
-    {
-        let wait = || {
-            let Ok(Interruption(mut signals)) = Interruption::heard() else { return };
+    if let Ok(Interruption(mut signals)) = Interruption::heard() {
+        let wait = move || {
             if let Some(first) = signals.forever().next() {
                 SIGNAL.store(first, Ordering::Relaxed);
             }

@@ -26,7 +26,7 @@ use pace::Pace;
 use queue::{Came, Closing, InTurn, Queue, Taken, Taking};
 use stall::Stall;
 use std::io::Write;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicI32, Ordering};
 use std::time::{Duration, Instant};
 use writer::Writer;
 
@@ -56,6 +56,7 @@ pub(super) fn run(wanted: &Track, out: &mut dyn Write) -> Outcome {
     let finders = (0..wanted.jobs.unwrap_or(cores.min(MOST_JOBS))).map(|_| Finder::new(wanted, &recipe));
     let finders = finders.collect::<Outcome<Vec<_>>>()?;
     let mut follower = Follower::new(wanted);
+    let interruption = signals::interruption(); // before there is anything to finish
     let mut writer = Writer::new(wanted)?;
     let (read, done, stall) = (Queue::new(WAITING, wanted.live), InTurn::new(finders.len(), AHEAD), Stall::default());
     std::thread::scope(|scope| {
@@ -66,7 +67,7 @@ pub(super) fn run(wanted: &Track, out: &mut dyn Write) -> Outcome {
             thread(scope, move || find_all(finder, read, done))?;
         }
         thread(scope, || read_all(source.as_mut(), wanted.frames, &stall, &read))?;
-        write_all(&mut follower, &mut writer, &done, &stall, frames, out)
+        write_all(&mut follower, &mut writer, &done, &stall, interruption, frames, out)
     })
 }
 
@@ -102,12 +103,12 @@ fn write_all(
     writer: &mut Writer<'_>,
     done: &InTurn<Searched>,
     stall: &Stall,
+    interruption: &AtomicI32,
     frames: Option<u64>,
     out: &mut dyn Write,
 ) -> Outcome {
     let (mut pace, mut said) = (Pace::new(), Instant::now());
     let (mut failed, mut dropped) = (0u64, 0u64);
-    let interruption = signals::interruption();
     loop {
         let signal = interruption.load(Ordering::Relaxed);
         if signal != 0 {
