@@ -13,6 +13,7 @@
 #![forbid(unsafe_code)]
 
 mod error;
+mod finder;
 mod frame;
 pub mod mcap;
 mod messages;
@@ -21,13 +22,16 @@ mod pose_text;
 pub mod ros;
 mod source;
 mod sources;
+mod stated_up;
 mod tracked;
 mod word;
 
 pub use error::{Error, Result};
+pub use finder::{Finder, Found};
 pub use frame::VideoFrame;
 pub use source::{Source, SourceInfo, SourceOptions};
 pub use sources::{SOURCES, open};
+pub use stated_up::StatedUp;
 pub use tracked::{Tracked, failed_record};
 pub use word::path_and_topic;
 
