@@ -95,7 +95,12 @@ fn up_in_the_world_of_the_poses_is_up_in_every_frame() {
     let words =
         ["track", "scene:boxes:frames=1,pose=none,size=160x120", "--floor", "--world-up", "0,0,1", "--out", "-"];
     let ran = bench.run(&words);
-    assert!(ran.code == Some(2) && ran.err.contains("there is no pose; accepted: poses, or an up in the camera's coordinates (--up)"), "{}", ran.err);
+    assert!(
+        ran.code == Some(2)
+            && ran.err.contains("there is no pose; accepted: poses, or an up in the camera's coordinates (--up)"),
+        "{}",
+        ran.err
+    );
 }
 
 #[test]
@@ -130,7 +135,10 @@ fn other_names_of_files_are_refused_and_planes_beyond_the_table_are_counted() {
     let lines = lines(&bench.run(&[&words[..], &["--out", "-"]].concat()).ok());
     let last = lines.iter().flat_map(ids).max().unwrap();
     assert!(last > 21, "{last}");
-    assert!(table.ends_with(&format!("and {} planes seen in fewer pixels; --out FILE.jsonl has all\n", last - 20)), "{table}");
+    assert!(
+        table.ends_with(&format!("and {} planes seen in fewer pixels; --out FILE.jsonl has all\n", last - 20)),
+        "{table}"
+    );
 }
 
 #[test]

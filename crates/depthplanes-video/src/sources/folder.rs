@@ -34,9 +34,11 @@ fn open(word: &str, options: &SourceOptions) -> Result<Box<dyn Source>> {
 
 /// What is accepted instead of a folder without maps: those folders in it that have some.
 fn accepted(folder: &Path) -> String {
-    let inner = folder.read_dir().into_iter().flatten().flatten().map(|entry| entry.path()).filter(|path| path.is_dir());
+    let inner =
+        folder.read_dir().into_iter().flatten().flatten().map(|entry| entry.path()).filter(|path| path.is_dir());
     let has_maps = |path: &PathBuf| names_in(path).is_ok_and(|names| names.iter().any(|name| is_map(name)));
-    let mut inner: Vec<String> = inner.filter(has_maps).take(MOST_SAID).map(|path| path.display().to_string()).collect();
+    let mut inner: Vec<String> =
+        inner.filter(has_maps).take(MOST_SAID).map(|path| path.display().to_string()).collect();
     inner.sort();
     match inner[..] {
         [] => "a folder of maps, such as *.png or *.npy".into(),
