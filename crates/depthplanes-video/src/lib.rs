@@ -14,6 +14,7 @@
 
 mod error;
 mod frame;
+mod gravity;
 pub mod mcap;
 mod messages;
 pub mod natural;
