@@ -12,6 +12,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod drawn;
 mod error;
 mod frame;
 mod gravity;
@@ -25,6 +26,7 @@ mod sources;
 mod tracked;
 mod word;
 
+pub use drawn::{DrawnPlane, POSE_AHEAD, drawn_planes};
 pub use error::{Error, Result};
 pub use frame::VideoFrame;
 pub use source::{Source, SourceInfo, SourceOptions};
