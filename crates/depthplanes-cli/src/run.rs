@@ -112,14 +112,8 @@ impl Recipe {
 
     /// Bytes that are used and reserved for a map.
     pub(crate) fn memory(&self, frame: &Frame) -> [u64; 2] {
-        // Bytes a pixel as measured on maps of 3 and 12 million pixels. The two reserve for the worst map and use little.
-        let (used, reserved) = match self.method.name {
-            "planar" => (24, 264),
-            "ngaf" => (16, 64),
-            _ => (144, 144),
-        };
         let pixels = (frame.width * frame.height) as u64;
-        [used * pixels, reserved * pixels]
+        self.method.bytes_per_pixel.map(|bytes| bytes * pixels)
     }
 
     fn outliner(&self) -> Outcome<Option<Outliner>> {
@@ -127,14 +121,11 @@ impl Recipe {
         Ok(outliner.map(|outliner| outliner.min_hole_px(self.min_hole)))
     }
 
-    /// A detector of it for a sensor.
-    pub(crate) fn detector(&self, sensor: Sensor) -> Detector {
+    /// A detector of it.
+    pub(crate) fn detector(&self) -> Detector {
         let method = self.method.of_values(&self.values).expect("the parameters were checked");
-        let detector = Detector::new(method)
-            .expect("the parameters were checked")
-            .threads(self.threads)
-            .curved(self.curved)
-            .sensor(sensor);
+        let detector =
+            Detector::new(method).expect("the parameters were checked").threads(self.threads).curved(self.curved);
         match self.coplanar {
             Some(within) => detector.merge_coplanar(within).expect("the limits were checked"),
             None => detector,
@@ -168,9 +159,8 @@ pub(crate) struct Runner<'a> {
 
 impl<'a> Runner<'a> {
     pub(crate) fn new(recipe: &'a Recipe) -> Self {
-        let sensor = Sensor::default();
         let outliner = recipe.outliner().expect("the tolerance was checked");
-        Runner { recipe, sensor, detector: recipe.detector(sensor), kept: [0; 2], outliner }
+        Runner { recipe, sensor: Sensor::default(), detector: recipe.detector(), kept: [0; 2], outliner }
     }
 
     /// Finds the planes of a frame; with `repeat` above 0 it also measures so many runs.
@@ -178,10 +168,8 @@ impl<'a> Runner<'a> {
     /// # Errors
     /// Those of the library.
     pub(crate) fn detect(&mut self, frame: &Frame, repeat: usize) -> Outcome<Found> {
-        if frame.sensor != self.sensor {
-            self.sensor = frame.sensor;
-            self.detector = self.recipe.detector(self.sensor);
-        }
+        self.sensor = frame.sensor;
+        self.detector.set_sensor(self.sensor);
         let needed = self.recipe.memory(frame);
         if needed > self.kept {
             memory::check(needed[0], needed[1])?;

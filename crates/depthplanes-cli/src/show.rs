@@ -43,12 +43,12 @@ pub(crate) fn summary(report: &Report<'_>) -> String {
 
 /// One line on what a camera would add and what to type, where it is not known and could be. `preset`: whether one was
 /// given, which then has no camera.
-pub(crate) fn camera_hint(report: &Report<'_>, preset: bool) -> String {
-    let sensor = report.frame.sensor;
+pub(crate) fn camera_hint(frame: &Frame, preset: bool) -> String {
+    let sensor = frame.sensor;
     let adds = "adds distance, normal and area in metres";
     match sensor.value_kind {
         // Neither grey levels nor relative depth have metres, whatever the camera.
-        ValueKind::Disparity if ["grey", "inverse-depth"].contains(&report.frame.encoding) => String::new(),
+        ValueKind::Disparity if ["grey", "inverse-depth"].contains(&frame.encoding) => String::new(),
         _ if sensor.intrinsics.is_some() => String::new(),
         ValueKind::Disparity => {
             format!("no camera: --baseline METRES with --intrinsics FX,FY,CX,CY or --camera FILE {adds}\n")

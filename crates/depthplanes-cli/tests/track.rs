@@ -95,7 +95,12 @@ fn up_in_the_world_of_the_poses_is_up_in_every_frame() {
     let words =
         ["track", "scene:boxes:frames=1,pose=none,size=160x120", "--floor", "--world-up", "0,0,1", "--out", "-"];
     let ran = bench.run(&words);
-    assert!(ran.code == Some(2) && ran.err.contains("has no pose; state --up"), "{}", ran.err);
+    assert!(
+        ran.code == Some(2)
+            && ran.err.contains("there is no pose; accepted: poses, or an up in the camera's coordinates (--up)"),
+        "{}",
+        ran.err
+    );
 }
 
 #[test]
@@ -115,9 +120,25 @@ fn a_broken_frame_is_said_and_survived_and_so_are_other_sizes_and_times() {
     assert_eq!(lines.len(), 6);
     assert!(lines[3]["error"].as_str().unwrap().contains("1580908150300.pgm"), "{}", lines[3]);
     assert_eq!((ids(&lines[0]), ids(&lines[4])), (vec![1, 2], vec![1, 2]), "{}", ran.out);
-    for said in ["time jumps by 8.7", "16 x 16 pixels, before 32 x 24", "1 frames failed; the others are done"] {
+    for said in ["time jumps by 8.7", "16 x 16 pixels, before 32 x 24", "1 frame failed; the others are done"] {
         assert!(ran.err.contains(said), "{said}: {}", ran.err);
     }
+}
+
+#[test]
+fn other_names_of_files_are_refused_and_planes_beyond_the_table_are_counted() {
+    let bench = Bench::new("track_names");
+    let error = bench.run(&["track", "scene:boxes:frames=1,size=64x48", "--out", "t.txt"]).fails(2);
+    assert!(error.contains("t.txt ends in .txt; accepted: .jsonl") && !bench.folder.join("t.txt").exists(), "{error}");
+    let words = ["track", "scene:boxes:seed=3,frames=12,size=320x240,sensor=kinect", "--min-pixels", "20"];
+    let table = bench.run(&words).ok();
+    let lines = lines(&bench.run(&[&words[..], &["--out", "-"]].concat()).ok());
+    let last = lines.iter().flat_map(ids).max().unwrap();
+    assert!(last > 21, "{last}");
+    assert!(
+        table.ends_with(&format!("and {} planes seen in fewer pixels; --out FILE.jsonl has all\n", last - 20)),
+        "{table}"
+    );
 }
 
 #[test]
@@ -127,7 +148,8 @@ fn what_fails_of_every_frame_is_said_a_few_times_and_is_in_every_line() {
     (0..9).for_each(|at| bench.write(&format!("video/{at}.pgm"), &two_planes(1000)));
     let ran = bench.run(&["track", "video", "--encoding", "millimetre", "--floor", "--out", "-"]);
     assert_eq!(ran.code, Some(2), "{ran:?}");
-    assert_eq!(ran.err.matches("--intrinsics").count(), 5, "{}", ran.err);
+    assert_eq!(ran.err.matches("error: `floor` needs").count(), 5, "{}", ran.err);
+    assert_eq!(ran.err.matches("no camera: --preset").count(), 1, "{}", ran.err);
     assert!(ran.err.contains("9 frames failed, and no other came from the source"), "{}", ran.err);
     assert!(
         lines(&ran.out).iter().all(|line| line["error"].as_str().unwrap().contains("planes in metres")),

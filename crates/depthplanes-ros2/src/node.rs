@@ -147,15 +147,14 @@ impl Node {
         let time_s = (time_s != 0.0).then_some(time_s); // one that is all 0 was set by nobody
         let name = self.options.depth.clone();
         let video = VideoFrame { index, name, time_s, pose: None, up: None, frame };
-        let up = self.search.up();
-        match self.search.search(&video.frame) {
+        match self.search.search(&video) {
             Ok(found) => {
                 self.counts.searched += 1;
                 if found.is_renumbered {
                     note("ids begin at 1 again, since label images hold none above 65535");
                 }
                 let header: &Header = &image.header;
-                self.outputs.send(&found, &video, header, up, self.counts.dropped, &mut self.once);
+                self.outputs.send(&found, &video, header, self.counts.dropped, &mut self.once);
             }
             Err(error) => self.failed(index, &error.to_string()),
         }

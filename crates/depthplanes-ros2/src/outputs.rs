@@ -7,7 +7,6 @@ use crate::pictures;
 use crate::say::{Error, Once};
 use crate::search::Found;
 use crate::topics::{SENSOR_DATA, publish, reliable};
-use depthplanes::ground::Up;
 use depthplanes::outline::Outliner;
 use depthplanes_io::outputs::ground_record;
 use depthplanes_video::{Tracked, VideoFrame, failed_record};
@@ -50,25 +49,26 @@ impl Outputs {
         found: &Found<'_>,
         video: &VideoFrame,
         header: &Header,
-        up: Up,
         dropped: u64,
         once: &mut Once,
     ) {
-        let Found { detection, tracks, ground, .. } = *found;
+        let Found { detection, tracks, ground, up, .. } = *found;
         let size = [detection.width, detection.height];
-        let record = ground_record(&video.name, ground, up);
-        let tracked = Tracked { video, detection, tracks, ground: Some(&record), dropped };
+        let record = ground.map(|ground| ground_record(&video.name, ground, up));
+        let tracked = Tracked { video, detection, tracks, ground: record.as_ref(), dropped };
         match tracked.labels() {
             Ok(labels) => send(&self.labels, pictures::labels(&labels, size, header), once),
             Err(error) => once.note(&error.to_string()),
         }
-        send(&self.obstacles, pictures::marks(&ground.marks, size, header), once);
+        if let Some(ground) = ground {
+            send(&self.obstacles, pictures::marks(&ground.marks, size, header), once);
+        }
         send(&self.planes, Text { data: tracked.record().to_string() }, once);
         match markers(&mut self.outliner, detection, tracks, &video.frame.sensor, header) {
             Ok(markers) => send(&self.markers, markers, once),
             Err(error) => once.note(&error.to_string()),
         }
-        let floor = ground.floor.as_ref();
+        let floor = ground.and_then(|ground| ground.floor.as_ref());
         if let Some(transform) = floor.and_then(|floor| floor::transform(floor, header, &self.floor_frame)) {
             send(&self.transforms, transform, once);
         }

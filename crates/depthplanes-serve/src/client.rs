@@ -15,6 +15,8 @@ use tokio::time::{Instant, timeout};
 const UNDER_WAY: u32 = 2;
 /// A page that takes no bytes for so long is gone; it connects again if it is not.
 const PATIENCE: Duration = Duration::from_secs(30);
+/// Bytes of a message from a page.
+pub(crate) const MESSAGE_BYTES: usize = 4096;
 /// How often a silent page is asked whether it is there.
 const EVERY: Duration = Duration::from_secs(20);
 
@@ -45,8 +47,23 @@ enum Wish {
     },
 }
 
-/// Why a page is let go.
-struct Gone;
+/// Why a page is let go: what it is told, if it still hears.
+struct Gone(CloseFrame);
+
+impl Gone {
+    /// It does not answer, or has closed the connection.
+    fn silent() -> Self {
+        Gone(CloseFrame { code: close_code::AWAY, reason: "the page does not answer".into() })
+    }
+
+    /// It sent what no page sends: more bytes than a message has.
+    fn too_large() -> Self {
+        Gone(CloseFrame {
+            code: close_code::SIZE,
+            reason: format!("messages have at most {MESSAGE_BYTES} bytes").into(),
+        })
+    }
+}
 
 pub(crate) async fn attend(mut socket: WebSocket, hub: Arc<Hub>, _place: OwnedSemaphorePermit) {
     let (mut shown, mut state, mut stopping) = (hub.shown.subscribe(), hub.state.subscribe(), hub.stopping.subscribe());
@@ -76,7 +93,8 @@ pub(crate) async fn attend(mut socket: WebSocket, hub: Arc<Hub>, _place: OwnedSe
             _ = pulse.tick() => page.ask(&mut socket).await,
         };
     }
-    let ending = CloseFrame { code: close_code::AWAY, reason: "the program has ended".into() };
+    let ended = || CloseFrame { code: close_code::AWAY, reason: "the program has ended".into() };
+    let ending = outcome.err().map_or_else(ended, |Gone(why)| why);
     let _ = timeout(Duration::from_secs(1), socket.send(Message::Close(Some(ending)))).await;
 }
 
@@ -107,7 +125,8 @@ impl Page<'_> {
     ) -> Result<(), Gone> {
         self.heard = Instant::now();
         match message {
-            None | Some(Err(_) | Ok(Message::Close(_))) => Err(Gone),
+            None | Some(Ok(Message::Close(_))) => Err(Gone::silent()),
+            Some(Err(_)) => Err(Gone::too_large()), // where it is another error nobody hears it
             Some(Ok(Message::Text(text))) => match serde_json::from_str(&text) {
                 Ok(wish) => self.grant(socket, wish).await,
                 Err(error) => send(socket, refused(&format!("this is not understood: {error}"))).await,
@@ -133,7 +152,10 @@ impl Page<'_> {
             Wish::Pause => Event::Play(false),
             Wish::Step { back } => Event::Step { back },
             Wish::Seek { index } => Event::Seek(index),
-            Wish::Set { name, value } => Event::Set { name, value },
+            Wish::Set { name, value } => match self.hub.method.with(&[(&name, value)]) {
+                Ok(_) => Event::Set { name, value },
+                Err(error) => return send(socket, refused(&error.to_string())).await,
+            },
             Wish::Reset => Event::Reset,
             Wish::Return => Event::Return,
         };
@@ -159,7 +181,7 @@ impl Page<'_> {
     /// Asks a silent page whether it is there.
     async fn ask(&self, socket: &mut WebSocket) -> Result<(), Gone> {
         if self.heard.elapsed() > 3 * EVERY {
-            return Err(Gone);
+            return Err(Gone::silent());
         }
         send(socket, Message::Ping(Default::default())).await
     }
@@ -180,6 +202,6 @@ fn refused(why: &str) -> Message {
 async fn send(socket: &mut WebSocket, message: Message) -> Result<(), Gone> {
     match timeout(PATIENCE, socket.send(message)).await {
         Ok(Ok(())) => Ok(()),
-        _ => Err(Gone),
+        _ => Err(Gone::silent()),
     }
 }

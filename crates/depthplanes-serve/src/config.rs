@@ -1,8 +1,8 @@
 //! What the page shows, and to how many.
 
-use depthplanes::ground::Up;
 use depthplanes::methods::{self, MethodInfo};
 use depthplanes_io::ReadOptions;
+use depthplanes_video::StatedUp;
 
 /// What is wanted of the page. The default takes the default method and estimates what is not known.
 #[derive(Clone, Debug)]
@@ -16,8 +16,8 @@ pub struct Config {
     pub values: Vec<f64>,
     /// How files that are dragged in are read.
     pub read: ReadOptions,
-    /// What is known of up, where the source does not say it.
-    pub up: Up,
+    /// What is stated of up.
+    pub up: StatedUp,
     /// Height of the camera above the floor, metres, if it is known.
     pub camera_height_m: Option<f64>,
     /// Frames for which a plane that is not seen keeps its id.
@@ -56,7 +56,7 @@ impl Default for Config {
             method,
             values: method.defaults(),
             read: ReadOptions::default(),
-            up: Up::Estimated,
+            up: StatedUp::Nothing,
             camera_height_m: None,
             kept_frames: depthplanes::track::KEPT_FRAMES,
             ignore_poses: false,

@@ -29,7 +29,9 @@ impl Guard {
             return Some("refused: a request names one host".into());
         };
         if !self.is_known(host) {
-            let accepted = "accepted: localhost and addresses; other names of this machine: --host NAME";
+            let addresses =
+                if self.is_open { "addresses" } else { "addresses of this machine alone (127.0.0.1, [::1])" };
+            let accepted = format!("accepted: localhost and {addresses}; other names of this machine: --host NAME");
             return Some(format!("refused: the host {host:?} is not this server; {accepted}"));
         }
         let origin = headers.get(ORIGIN)?;

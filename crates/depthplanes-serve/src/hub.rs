@@ -7,6 +7,7 @@ use crate::guard::Guard;
 use crate::rays::Rays;
 use crate::recent::Recents;
 use axum::body::Bytes;
+use depthplanes::methods::MethodInfo;
 use depthplanes_io::ReadOptions;
 use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
@@ -22,6 +23,7 @@ pub(crate) struct Shown {
 /// Shared by all.
 pub(crate) struct Hub {
     pub(crate) hello: String,
+    pub(crate) method: &'static MethodInfo,
     pub(crate) read: ReadOptions,
     pub(crate) limits: Limits,
     pub(crate) guard: Guard,
@@ -47,6 +49,7 @@ impl Hub {
     ) -> Self {
         Hub {
             hello,
+            method: config.method,
             read: config.read.clone(),
             limits: config.limits,
             guard,

@@ -1,17 +1,14 @@
 //! A frame becomes what the page shows of it: planes, their ids and outlines, and the ground.
 
 use crate::config::Config;
-use depthplanes::ground::{Ground, GroundFinder, Up};
+use depthplanes::ground::{Ground, GroundFinder};
 use depthplanes::methods::MethodInfo;
 use depthplanes::outline::{Outliner, Outlines};
 use depthplanes::track::{Tracker, Tracks};
-use depthplanes::{Detection, Detector, Error, Sensor, ValueKind};
-use depthplanes_io::memory;
-use depthplanes_video::VideoFrame;
+use depthplanes::{Detection, Detector, Error};
+use depthplanes_video::{Finder, VideoFrame};
 use std::time::Instant;
 
-/// Bytes a pixel that are used and reserved, the method's and the page's.
-const BYTES_A_PIXEL: [u64; 2] = [64, 320];
 /// Pixels of the smallest hole that outlines keep: smaller ones are specks on the page.
 const LEAST_HOLE_PX: usize = 100;
 
@@ -19,14 +16,10 @@ const LEAST_HOLE_PX: usize = 100;
 pub(crate) struct Pipeline {
     pub(crate) method: &'static MethodInfo,
     values: Vec<f64>,
-    detector: Detector,
-    sensor: Sensor,
+    finder: Finder,
     outliner: Outliner,
-    kept_frames: u32,
     tracker: Tracker,
     ignores_poses: bool,
-    up: Up,
-    ground: GroundFinder,
 }
 
 /// What was found in a frame.
@@ -44,18 +37,15 @@ impl Pipeline {
     /// # Errors
     /// A parameter or a height that is out of range.
     pub(crate) fn new(config: &Config) -> depthplanes::Result<Self> {
-        let sensor = Sensor::default();
+        let ground = GroundFinder::default().camera_height_m(config.camera_height_m)?;
+        let detector = Detector::new(config.method.of_values(&config.values)?)?;
         Ok(Pipeline {
             method: config.method,
-            detector: Detector::new(config.method.of_values(&config.values)?)?.sensor(sensor),
             values: config.values.clone(),
-            sensor,
+            finder: Finder::new(detector).with_ground_where_possible(ground, config.up)?,
             outliner: Outliner::default().min_hole_px(LEAST_HOLE_PX),
-            kept_frames: config.kept_frames,
             tracker: Tracker::default().kept_frames(config.kept_frames),
             ignores_poses: config.ignore_poses,
-            up: config.up,
-            ground: GroundFinder::default().camera_height_m(config.camera_height_m)?,
         })
     }
 
@@ -81,50 +71,31 @@ impl Pipeline {
     /// # Errors
     /// [`Error::Parameter`] for a value out of range.
     pub(crate) fn set_all(&mut self, values: Vec<f64>) -> depthplanes::Result<()> {
-        self.detector = Detector::new(self.method.of_values(&values)?)?.sensor(self.sensor);
+        self.finder.set_detector(Detector::new(self.method.of_values(&values)?)?);
         self.values = values;
         Ok(())
     }
 
     /// Forgets the planes of the frames before.
     pub(crate) fn forget(&mut self) {
-        self.tracker = Tracker::default().kept_frames(self.kept_frames);
+        self.tracker.forget();
     }
 
     /// Finds all there is to find in a frame.
     ///
     /// # Errors
-    /// What the library says of the map, and too little memory for it, as text.
-    pub(crate) fn find(&mut self, video: &VideoFrame) -> Result<Found<'_>, String> {
-        let frame = &video.frame;
-        let [used, reserved] = BYTES_A_PIXEL.map(|bytes| bytes * (frame.width * frame.height) as u64);
-        memory::check(used, reserved).map_err(text)?;
-        if frame.sensor != self.sensor {
-            self.sensor = frame.sensor;
-            self.set_all(self.values.clone()).map_err(text)?;
-        }
-        let view = frame.view().map_err(text)?;
+    /// What the library says of the map, and too little memory for it.
+    pub(crate) fn find(&mut self, video: &VideoFrame) -> depthplanes_video::Result<Found<'_>> {
+        let sensor = &video.frame.sensor;
         let mut clock = Clock::new();
-        let detection = self.detector.detect_observed(view, &mut |stage| clock.ends(stage)).map_err(text)?;
+        let found = self.finder.find_observed(video, &mut |stage| clock.ends(stage))?;
         let pose = video.pose.as_ref().filter(|_| !self.ignores_poses);
-        let tracks = self.tracker.track(detection, &frame.sensor, pose).map_err(text)?;
+        let tracks = self.tracker.track(found.detection, sensor, pose)?;
         clock.ends("track");
-        let is_metric = frame.sensor.intrinsics.is_some() && frame.sensor.value_kind != ValueKind::Disparity;
-        let mut ground = None;
-        if is_metric {
-            let up = video.up.map_or(Ok(self.up), Up::known).map_err(text)?;
-            self.ground = std::mem::take(&mut self.ground).up(up);
-            ground = Some(self.ground.find(view, detection, &frame.sensor).map_err(text)?);
-            clock.ends("ground");
-        }
-        let outlines = self.outliner.outline_seen_by(detection, &frame.sensor).map_err(text)?;
+        let outlines = self.outliner.outline_seen_by(found.detection, sensor)?;
         clock.ends("outlines");
-        Ok(Found { detection, outlines, tracks, ground, stages: clock.stages })
+        Ok(Found { detection: found.detection, outlines, tracks, ground: found.ground, stages: clock.stages })
     }
-}
-
-fn text(error: impl std::fmt::Display) -> String {
-    error.to_string()
 }
 
 /// Milliseconds of stage after stage.

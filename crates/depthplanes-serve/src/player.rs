@@ -33,6 +33,8 @@ pub(crate) struct Player {
     next: Option<Read>,
     /// Whether it plays again after a file.
     resumes: bool,
+    /// The frame that was shown before a file.
+    left: Option<(Arc<VideoFrame>, f64)>,
     /// Frames that are to be shown even though it does not play.
     steps: u32,
     /// The frame that is shown, with how long it took to read.
@@ -59,6 +61,7 @@ impl Player {
             state,
             next: None,
             resumes: false,
+            left: None,
             steps: 0,
             current: None,
             is_stale: false,
@@ -159,7 +162,9 @@ impl Player {
                 self.parameters_changed(outcome);
             }
             Event::Show(video) => {
-                self.resumes = if self.state.file.is_some() { self.resumes } else { self.state.is_playing };
+                if self.state.file.is_none() {
+                    (self.resumes, self.left) = (self.state.is_playing, self.current.take());
+                }
                 (self.state.is_playing, self.steps) = (false, 0);
                 self.state.file = Some(video.name.clone());
                 self.pipeline.forget();
@@ -176,13 +181,14 @@ impl Player {
         self.is_stale = self.current.is_some();
     }
 
-    /// Back from a file to the source, at the frame that is next there; whether a file was shown.
+    /// Back from a file to the frame of the source that was shown before it; whether a file was shown.
     fn leave_file(&mut self) -> bool {
         let was_shown = self.state.file.take().is_some();
         if was_shown {
             self.pipeline.forget();
-            self.state.error = None;
-            (self.state.is_playing, self.steps) = (self.resumes, 1);
+            self.state.is_playing = self.resumes;
+            self.current = self.left.take();
+            self.look(true);
         }
         was_shown
     }

@@ -1,6 +1,6 @@
 //! The server: its routes, and the threads behind it.
 
-use crate::client;
+use crate::client::{self, MESSAGE_BYTES};
 use crate::config::Config;
 use crate::connections::Bounded;
 use crate::error::{Error, Result};
@@ -30,8 +30,6 @@ use std::time::Duration;
 
 /// Wishes of pages that wait for the player; more are refused.
 const WAITING: usize = 64;
-/// Bytes of a message from a page.
-const MESSAGE_BYTES: usize = 4096;
 /// Time for pages to hear that it ends.
 const FAREWELL: Duration = Duration::from_secs(2);
 

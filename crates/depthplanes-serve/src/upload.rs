@@ -27,6 +27,7 @@ pub(crate) async fn upload(
     let Ok(_place) = hub.uploads.try_acquire() else {
         return Err((StatusCode::TOO_MANY_REQUESTS, "another file is being read; try again".into()));
     };
+    let name: String = name.chars().filter(|letter| !letter.is_control()).collect(); // it comes back in texts
     let most = hub.limits.upload_bytes;
     let too_large = |_| {
         let message = format!(

@@ -101,11 +101,12 @@ fn parameters_act_at_once_also_while_it_is_paused() {
     assert!(count(&fewer) < count(&before), "{} {}", count(&fewer), count(&before));
     assert!(fewer["planes"].as_array().unwrap().iter().all(|plane| plane["pixel_count"].as_u64() > Some(3000)));
     page.ask(json!({"type": "set", "name": "min-pixels", "value": -1}));
-    let refused = page.until("state", |state| state["error"].is_string());
+    let refused = page.until("refused", |_| true); // this page alone is told
     assert!(refused["error"].as_str().unwrap().contains("min-pixels"), "{refused}");
-    assert_eq!(refused["values"][0], 3000.0);
     page.ask(json!({"type": "set", "name": "theta", "value": 1}));
-    page.until("state", |state| state["error"].as_str().is_some_and(|error| error.contains("theta")));
+    page.until("refused", |refused| refused["error"].as_str().is_some_and(|error| error.contains("theta")));
+    let state = page.until("state", |_| true);
+    assert_eq!((&state["values"][0], &state["error"]), (&json!(3000.0), &Value::Null));
     page.ask(json!({"type": "reset"}));
     page.until("state", |state| state["values"][0] == 100.0 && state["error"].is_null());
 }
@@ -246,6 +247,7 @@ fn what_is_no_wish_is_refused_and_a_flood_ends() {
     }
     page.send_text(&" ".repeat(100_000));
     while page.message().is_some() {}
+    assert_eq!(page.closed_with, Some(1009));
     Page::open(server.address()).until("frame", |_| true);
 }
 
@@ -257,6 +259,10 @@ fn a_file_that_is_dragged_in_is_shown_with_its_notes() {
     let address = server.address();
     let mut page = Page::open(address);
     page.until("frame", |_| true);
+    page.ask(json!({"type": "pause"}));
+    page.until("state", |state| state["is_playing"] == false);
+    page.ask(json!({"type": "seek", "index": 7}));
+    page.until("frame", |frame| frame["index"] == 7);
     let wall: Vec<u16> = (0..64 * 48).map(|at| [1500, 2500, 65535][at % 64 / 25]).collect();
     let (status, answer) = request(address, "POST", "/file/a%20wall.png", "", &grey16_png(64, 48, &wall));
     assert_eq!(status, 204, "{answer}");
@@ -266,12 +272,14 @@ fn a_file_that_is_dragged_in_is_shown_with_its_notes() {
     let state = page.until("state", |state| state["file"] == "a wall.png");
     assert_eq!(state["is_playing"], false);
     page.ask(json!({"type": "return"}));
-    page.until("frame", |frame| frame["name"].as_str().unwrap().starts_with("frame-"));
+    let frame = page.until("frame", |frame| frame["name"].as_str().unwrap().starts_with("frame-"));
+    assert_eq!(frame["index"], 7, "it goes back to the frame that was shown before");
     let (status, answer) = request(address, "POST", "/file/text.png", "", b"no map at all");
     assert_eq!(status, 422);
     assert!(answer.contains("text.png: "), "{answer}");
     assert_eq!(request(address, "POST", "/file/large.png", "", &vec![0; 100_001]).0, 413);
-    page.until("frame", |_| true);
+    page.ask(json!({"type": "play"}));
+    page.until("frame", |frame| frame["index"] == 8);
 }
 
 #[test]

@@ -53,7 +53,7 @@ fn round(frames: &[VideoFrame], times: &mut [Vec<f64>; 4]) -> Result<Vec<Vec<u32
     let (mut detector, mut tracker, mut finder) = (Detector::default(), Tracker::default(), GroundFinder::default());
     let mut ids = Vec::new();
     for VideoFrame { frame, pose, .. } in frames {
-        detector = detector.sensor(frame.sensor);
+        detector.set_sensor(frame.sensor);
         let start = Instant::now();
         let found = detector.detect(frame.view()?)?;
         times[1].push(milliseconds(start));

@@ -14,6 +14,7 @@
 
 mod drawn;
 mod error;
+mod finder;
 mod frame;
 mod gravity;
 pub mod mcap;
@@ -23,14 +24,17 @@ mod pose_text;
 pub mod ros;
 mod source;
 mod sources;
+mod stated_up;
 mod tracked;
 mod word;
 
 pub use drawn::{DrawnPlane, POSE_AHEAD, drawn_planes};
 pub use error::{Error, Result};
+pub use finder::{Finder, Found};
 pub use frame::VideoFrame;
 pub use source::{Source, SourceInfo, SourceOptions};
 pub use sources::{SOURCES, open};
+pub use stated_up::StatedUp;
 pub use tracked::{Tracked, failed_record};
 pub use word::path_and_topic;
 

@@ -148,10 +148,19 @@ fn a_synthetic_camera_moves_and_knows_where_it_is() {
 fn what_is_no_source_is_said_with_what_is() {
     let error = open("/nowhere/at/all", &SourceOptions::default()).unwrap_err().to_string();
     assert!(error.starts_with("/nowhere/at/all: there is no such file or folder"), "{error}");
-    assert!(SOURCES.iter().all(|source| error.contains(source.name)), "{error}");
+    assert!(SOURCES.iter().all(|source| error.contains(source.about)), "{error}");
     let empty = Folder::new("empty");
     let error = open(empty.word(), &SourceOptions::default()).unwrap_err().to_string();
-    assert!(error.contains("no map in this folder"), "{error}");
+    assert!(error.ends_with("no map in this folder; accepted: a folder of maps, such as *.png or *.npy"), "{error}");
+    let (set, wall) = (Folder::new("a_set"), Folder::new("a_set/depth"));
+    wall.map("1.png", 2000);
+    let error = open(set.word(), &SourceOptions::default()).unwrap_err().to_string();
+    assert!(error.ends_with(&format!("such as {}", wall.word())), "{error}");
+    let map = format!("{}/1.png", wall.word());
+    let error = open(&map, &SourceOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("one map, no video") && error.contains("`depthplanes detect`"), "{error}");
+    let error = open(&format!("{map}:camera/depth"), &SourceOptions::default()).unwrap_err().to_string();
+    assert!(error.ends_with(&format!("without a slash; accepted: {map}:/camera/depth")), "{error}");
     let decode = DecodeOptions { raw_type: Some("uint17".into()), raw_size: Some((4, 3)), ..DecodeOptions::default() };
     let options = SourceOptions::default().read(ReadOptions { decode, ..ReadOptions::default() });
     assert!(open("-", &options).unwrap_err().to_string().contains("uint17"));

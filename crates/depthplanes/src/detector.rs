@@ -111,8 +111,18 @@ impl Detector {
     /// degrees from the axis get no label.
     #[must_use]
     pub fn sensor(mut self, sensor: Sensor) -> Self {
-        self.sensor = sensor;
+        self.set_sensor(sensor);
         self
+    }
+
+    /// As [`Detector::sensor`], between two frames of a video whose sensor may change.
+    pub fn set_sensor(&mut self, sensor: Sensor) {
+        self.sensor = sensor;
+    }
+
+    /// Its method's row in [`crate::methods::METHODS`].
+    pub fn method(&self) -> &'static MethodInfo {
+        self.method.info()
     }
 
     /// Threads for large maps, 1 and up (0 counts as 1). The answer is the same for any number. With more than one,

@@ -86,14 +86,18 @@ impl Sensor {
         self.intrinsics.map_or(Ok(()), |camera| Intrinsics::new(camera.fx, camera.fy, camera.cx, camera.cy).map(drop))
     }
 
-    /// Whether planes can be given in metres.
+    /// Whether planes can be given in metres: the value kind is metric and the camera known.
+    pub fn is_metric(&self) -> bool {
+        self.value_kind != ValueKind::Disparity && self.intrinsics.is_some()
+    }
+
+    /// That planes can be given in metres.
     ///
     /// # Errors
     /// [`Error::NotMetric`], which names what `wants` them, unless the value kind is metric and the camera known.
     pub(crate) fn check_metric(&self, wants: &'static str) -> Result<()> {
         let is_disparity = self.value_kind == ValueKind::Disparity;
-        let is_metric = !is_disparity && self.intrinsics.is_some();
-        if is_metric { Ok(()) } else { Err(Error::NotMetric { wants, is_disparity }) }
+        if self.is_metric() { Ok(()) } else { Err(Error::NotMetric { wants, is_disparity }) }
     }
 }
 

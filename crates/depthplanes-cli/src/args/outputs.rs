@@ -1,10 +1,11 @@
 //! The flags of `detect` and `floor` that say what comes out, and how it runs.
 
 use super::flags;
-use clap::{Arg, builder::PossibleValuesParser};
+use clap::{Arg, ArgMatches, builder::PossibleValuesParser};
 use depthplanes::Coplanar;
 use depthplanes::outline::DEFAULT_TOLERANCE_PX;
 use depthplanes_io::outputs::{OUTPUTS, Output};
+use depthplanes_video::StatedUp;
 
 pub(super) fn output_flags() -> Vec<Arg> {
     let flag = |output: &'static Output| {
@@ -99,6 +100,23 @@ pub(super) fn ground_flags() -> [Arg; 2] {
             .long("camera-height")
             .help("The camera's height, if it is known: of several levels the one nearest to it is the floor, not the lowest"),
     ]
+}
+
+/// Up in the world of a video's poses.
+pub(super) fn world_up() -> Arg {
+    flags::numbers::<3>("world-up", "X,Y,Z")
+        .long("world-up")
+        .conflicts_with("up")
+        .help("Up in the world of the source's poses, such as 0,0,1: then up is known in every frame")
+}
+
+/// What [`ground_flags`] and [`world_up`] state of up.
+pub(super) fn stated_up(matches: &ArgMatches) -> StatedUp {
+    match (matches.get_one("world-up"), matches.get_one("up")) {
+        (Some(&up), _) => StatedUp::World(up),
+        (None, Some(&up)) => StatedUp::Camera(up),
+        (None, None) => StatedUp::Nothing,
+    }
 }
 
 pub(super) fn floor_flags() -> Vec<Arg> {

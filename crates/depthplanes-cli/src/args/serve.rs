@@ -4,6 +4,7 @@ use super::flags::{self, Reading, path_given};
 use super::outputs;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use depthplanes::methods::MethodInfo;
+use depthplanes_video::StatedUp;
 use std::net::IpAddr;
 use std::path::PathBuf;
 
@@ -14,7 +15,7 @@ pub(crate) struct Serve {
     pub(crate) method: &'static MethodInfo,
     pub(crate) parameters: Vec<(&'static str, f64)>,
     pub(crate) noise_table: Option<PathBuf>,
-    pub(crate) up: Option<[f64; 3]>,
+    pub(crate) up: StatedUp,
     pub(crate) camera_height: Option<f64>,
     pub(crate) kept_frames: Option<u32>,
     pub(crate) ignore_poses: bool,
@@ -46,6 +47,7 @@ pub(super) fn command(method: Vec<Arg>) -> Command {
             .long("host")
             .value_name("NAME")
             .action(ArgAction::Append)
+            .value_parser(host_name)
             .help("A name of this machine by which browsers may ask for the page, beside localhost and addresses"),
     ];
     let running = [
@@ -58,9 +60,22 @@ pub(super) fn command(method: Vec<Arg>) -> Command {
         .arg(flags::source())
         .args(page.map(under("Page")))
         .args(outputs::ground_flags().map(under("Ground")))
+        .arg(outputs::world_up().help_heading("Ground"))
         .args(flags::reading())
         .args(method)
         .args(running.map(under("Running")))
+}
+
+/// A name as browsers send it, without scheme and port.
+fn host_name(given: &str) -> Result<String, String> {
+    let is_label = |label: &str| {
+        !label.is_empty() && label.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"-_".contains(&byte))
+    };
+    if given.split('.').all(is_label) {
+        Ok(given.into())
+    } else {
+        Err("accepted: a name such as robot.local, without http:// and port".into())
+    }
 }
 
 pub(super) fn from_matches(matches: &ArgMatches, method: &'static MethodInfo) -> Serve {
@@ -70,7 +85,7 @@ pub(super) fn from_matches(matches: &ArgMatches, method: &'static MethodInfo) ->
         method,
         parameters: flags::parameters_given(matches),
         noise_table: path_given(matches, "noise-table"),
-        up: matches.get_one("up").copied(),
+        up: outputs::stated_up(matches),
         camera_height: matches.get_one("camera-height").copied(),
         kept_frames: matches.get_one::<usize>("kept-frames").map(|&frames| frames as u32),
         ignore_poses: matches.get_flag("ignore-poses"),

@@ -4,6 +4,7 @@ use super::flags::{self, Reading, path_given};
 use super::outputs;
 use clap::{Arg, ArgMatches, Command};
 use depthplanes::methods::MethodInfo;
+use depthplanes_video::StatedUp;
 use std::path::PathBuf;
 
 /// What is wanted of a video.
@@ -21,9 +22,7 @@ pub(crate) struct Track {
     pub(crate) overlays: Option<PathBuf>,
     /// Whether the ground is wanted as well.
     pub(crate) floor: bool,
-    pub(crate) up: Option<[f64; 3]>,
-    /// Up in the world of the poses.
-    pub(crate) world_up: Option<[f64; 3]>,
+    pub(crate) up: StatedUp,
     pub(crate) camera_height: Option<f64>,
     /// Whether the newest frames are wanted, and others dropped.
     pub(crate) live: bool,
@@ -47,11 +46,6 @@ pub(super) fn command(method: Vec<Arg>) -> Command {
             .help("Write a picture for each frame into this folder; with --floor of the ground"),
         flags::switch("floor", "Find the floor, obstacles and steps of each frame too; they go into its line"),
     ];
-    let world_up = flags::numbers::<3>("world-up", "X,Y,Z")
-        .long("world-up")
-        .conflicts_with("up")
-        .requires("floor")
-        .help("Up in the world of the source's poses, such as 0,0,1: then up is known in every frame");
     let running = [
         flags::switch("live", "Drop frames rather than fall behind: the newest ones are wanted"),
         flags::count("jobs", "N")
@@ -66,7 +60,7 @@ pub(super) fn command(method: Vec<Arg>) -> Command {
         .arg(flags::source())
         .args(output.map(under("Output")))
         .args(outputs::ground_flags().map(|arg| arg.requires("floor")).map(under("Ground")))
-        .arg(world_up.help_heading("Ground"))
+        .arg(outputs::world_up().requires("floor").help_heading("Ground"))
         .args(flags::reading())
         .args(method)
         .args(running.map(under("Running")))
@@ -84,8 +78,7 @@ pub(super) fn from_matches(matches: &ArgMatches, method: &'static MethodInfo) ->
         labels: path_given(matches, "labels"),
         overlays: path_given(matches, "overlays"),
         floor: matches.get_flag("floor"),
-        up: matches.get_one("up").copied(),
-        world_up: matches.get_one("world-up").copied(),
+        up: outputs::stated_up(matches),
         camera_height: matches.get_one("camera-height").copied(),
         live: matches.get_flag("live"),
         jobs: count("jobs"),

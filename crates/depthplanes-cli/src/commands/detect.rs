@@ -199,7 +199,7 @@ impl Plan<'_> {
     }
 
     fn camera_hint(&self, report: &Report<'_>) -> String {
-        show::camera_hint(report, self.wanted.reading.preset.is_some())
+        show::camera_hint(report.frame, self.wanted.reading.preset.is_some())
     }
 }
 

@@ -27,7 +27,7 @@ pub(super) fn run(wanted: &Explain, out: &mut dyn Write) -> Outcome {
     let frame = load::frame(&input, &options).map_err(named)?;
     let [used, reserved] = recipe.memory(&frame);
     memory::check(used, reserved).map_err(|error| named(error.into()))?;
-    let why = recipe.detector(frame.sensor).explain(frame.view()?, wanted.at);
+    let why = recipe.detector().sensor(frame.sensor).explain(frame.view()?, wanted.at);
     let why = why.map_err(Failure::from).map_err(named)?;
     let text = if wanted.json { format!("{:#}\n", record(&name, &recipe, &why)) } else { readable(&name, &why) };
     out.write_all(text.as_bytes())?;

@@ -7,7 +7,6 @@ use crate::failure::{Failure, Outcome, note, say};
 use crate::load;
 use crate::run::Recipe;
 use crate::signals;
-use depthplanes::ground::Up;
 use depthplanes::noise::SensorNoise;
 use depthplanes_serve::{Config, Server};
 use depthplanes_video::{SourceOptions, open};
@@ -22,7 +21,7 @@ pub(super) fn run(wanted: &Serve, out: &mut dyn Write) -> Outcome {
     let mut config = Config::default();
     config.name.clone_from(&wanted.source);
     (config.method, config.values, config.read) = (wanted.method, recipe.values, read);
-    config.up = wanted.up.map_or(Ok(Up::Estimated), Up::known)?;
+    config.up = wanted.up;
     config.camera_height_m = wanted.camera_height;
     config.kept_frames = wanted.kept_frames.unwrap_or(config.kept_frames);
     config.ignore_poses = wanted.ignore_poses;
@@ -36,7 +35,11 @@ pub(super) fn run(wanted: &Serve, out: &mut dyn Write) -> Outcome {
     if wanted.bind.is_loopback() {
         say("only this machine can open the page (--bind lets others in); Ctrl-C ends it");
     } else {
-        note("other machines can open the page, see the video and change parameters; nobody is asked for a password");
+        let port = server.address().port();
+        note(&format!(
+            "other machines can open the page under this machine's addresses (port {port}), see the video and change parameters; \
+             nobody is asked for a password"
+        ));
     }
     interrupted.wait();
     server.stop();

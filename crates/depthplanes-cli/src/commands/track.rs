@@ -89,7 +89,7 @@ fn read_all(source: &mut dyn Source, most: Option<u64>, stall: &Stall, read: &Qu
     }
 }
 
-fn find_all(mut finder: Finder<'_>, read: &Queue<Read>, done: &InTurn<Searched>) {
+fn find_all(mut finder: Finder, read: &Queue<Read>, done: &InTurn<Searched>) {
     let _closing = Closing(done);
     while let Some(Taken { element, turn, dropped }) = read.take() {
         if !done.send(turn, finder.search(element, dropped)) {
@@ -152,10 +152,11 @@ fn write_all(
     if dropped > 0 {
         note(&format!("{dropped} frames were dropped, since the newest ones are wanted (--live)"));
     }
+    let many = if failed == 1 { "frame" } else { "frames" };
     match (failed, pace.frames) {
         (0, 0) => Err(Failure::request("no frame came from the source")),
         (0, _) => Ok(()),
-        (failed, 0) => Err(Failure::request(format!("{failed} frames failed, and no other came from the source"))),
-        (failed, _) => Err(Failure::request(format!("{failed} frames failed; the others are done"))),
+        (failed, 0) => Err(Failure::request(format!("{failed} {many} failed, and no other came from the source"))),
+        (failed, _) => Err(Failure::request(format!("{failed} {many} failed; the others are done"))),
     }
 }

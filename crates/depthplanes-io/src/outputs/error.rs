@@ -36,10 +36,10 @@ pub enum OutputError {
         second: String,
     },
     /// The path is a folder.
-    #[error("{}: this is a folder, a file name is needed (or --out-dir for fixed names in a folder)", .0.display())]
+    #[error("{}: this is a folder, a file name is needed", .0.display())]
     IsFolder(PathBuf),
     /// The folder to write into does not exist.
-    #[error("{}: the folder `{}` does not exist; make it first (--out-dir makes its own)", path.display(), folder.display())]
+    #[error("{}: the folder `{}` does not exist; make it first", path.display(), folder.display())]
     NoFolder {
         /// The path asked for.
         path: PathBuf,

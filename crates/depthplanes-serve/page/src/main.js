@@ -31,7 +31,7 @@ globalThis.depthplanes = Object.assign(page, { view2d, view3d }); // for the bro
 new Drop({ zone: find("drop"), button: find("open"), input: find("file") }, () => page.hello?.upload_bytes ?? Infinity, banner);
 
 function receive(message) {
-    ({ hello: begin, state: showState, camera: of => view3d.setCamera(of), frame: wait, explanation: of => pick.answer(of), refused: of => banner(of.error) })[message.type]?.(message);
+    ({ hello: begin, state: showState, camera: of => view3d.setCamera(of), frame: wait, explanation: of => pick.answer(of), refused: refuse })[message.type]?.(message);
 }
 
 function begin(hello) {
@@ -109,6 +109,12 @@ function showState(state) {
     if (state.file) find("notes-panel").open = true;
     banner(state.error, "state");
     if (!state.is_playing && page.frame) showPanels(performance.now());
+}
+
+/** What this page asked for is not done: its sliders go back. */
+function refuse({ error }) {
+    banner(error);
+    sliders.show(page.state.values);
 }
 
 /** Shows why something failed, or nothing; `about` says whose words these are, so that others' stay. */

@@ -40,6 +40,8 @@ pub struct Page {
     pub draws: bool,
     /// The newest state.
     state: Value,
+    /// The code with which the server has closed the connection.
+    pub closed_with: Option<u16>,
 }
 
 impl Page {
@@ -56,7 +58,7 @@ impl Page {
         let stream = TcpStream::connect(address).unwrap();
         stream.set_read_timeout(Some(LONG)).unwrap();
         match tungstenite::client(request, stream) {
-            Ok((socket, _)) => Ok(Page { socket, draws: true, state: Value::Null }),
+            Ok((socket, _)) => Ok(Page { socket, draws: true, state: Value::Null, closed_with: None }),
             Err(tungstenite::HandshakeError::Failure(tungstenite::Error::Http(response))) => {
                 Err(response.status().as_u16())
             }
@@ -93,7 +95,11 @@ impl Page {
                     }
                     return Some(head);
                 }
-                Ok(Message::Close(_)) | Err(_) => return None,
+                Ok(Message::Close(why)) => {
+                    self.closed_with = why.map(|why| why.code.into());
+                    return None;
+                }
+                Err(_) => return None,
                 Ok(_) => (),
             }
         }

@@ -4,7 +4,7 @@ use super::files::{Entry, Files, PoseOf, names_in};
 use crate::error::{Error, Result};
 use crate::source::{Source, SourceInfo, SourceOptions};
 use depthplanes_io::formats::FORMATS;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub(super) const FOLDER: SourceInfo = SourceInfo {
     name: "folder",
@@ -13,11 +13,14 @@ pub(super) const FOLDER: SourceInfo = SourceInfo {
     open,
 };
 
+/// Folders in a message.
+const MOST_SAID: usize = 4;
+
 fn open(word: &str, options: &SourceOptions) -> Result<Box<dyn Source>> {
     let folder = Path::new(word);
     let names: Vec<String> = names_in(folder)?.into_iter().filter(|name| is_map(name)).collect();
     if names.is_empty() {
-        return Err(Error::source(word, "no map in this folder", "a folder of maps, such as *.png or *.npy"));
+        return Err(Error::source(word, "no map in this folder", accepted(folder)));
     }
     let unit = unit_s(&names);
     let entry = |name: String| Entry {
@@ -29,8 +32,22 @@ fn open(word: &str, options: &SourceOptions) -> Result<Box<dyn Source>> {
     Ok(Box::new(Files::new(entries, options.read.clone())))
 }
 
+/// What is accepted instead of a folder without maps: those folders in it that have some.
+fn accepted(folder: &Path) -> String {
+    let inner =
+        folder.read_dir().into_iter().flatten().flatten().map(|entry| entry.path()).filter(|path| path.is_dir());
+    let has_maps = |path: &PathBuf| names_in(path).is_ok_and(|names| names.iter().any(|name| is_map(name)));
+    let mut inner: Vec<String> =
+        inner.filter(has_maps).take(MOST_SAID).map(|path| path.display().to_string()).collect();
+    inner.sort();
+    match inner[..] {
+        [] => "a folder of maps, such as *.png or *.npy".into(),
+        _ => format!("a folder of maps, such as {}", inner.join(" or ")),
+    }
+}
+
 /// Whether a file is a map by its name, and none of our own results.
-fn is_map(name: &str) -> bool {
+pub(super) fn is_map(name: &str) -> bool {
     let extension = Path::new(name).extension().unwrap_or_default();
     let is_ours = depthplanes_io::outputs::OUTPUTS.iter().any(|output| name.ends_with(&format!(".{}", output.file)));
     !is_ours && FORMATS.iter().flat_map(|format| format.extensions).any(|own| extension.eq_ignore_ascii_case(own))

@@ -12,6 +12,7 @@ mod tum;
 
 use crate::error::{Error, Result};
 use crate::source::{Source, SourceInfo, SourceOptions};
+use std::path::Path;
 
 /// All sources; the first that takes a word opens it.
 pub const SOURCES: &[SourceInfo] =
@@ -23,11 +24,23 @@ pub const SOURCES: &[SourceInfo] =
 /// # Errors
 /// [`Error::Source`] for a word that no source takes, and those of opening it.
 pub fn open(word: &str, options: &SourceOptions) -> Result<Box<dyn Source>> {
-    let Some(info) = SOURCES.iter().find(|info| (info.is)(word)) else {
-        let wrong =
-            if std::path::Path::new(word).exists() { "no source of frames" } else { "there is no such file or folder" };
-        let accepted: Vec<String> = SOURCES.iter().map(|info| format!("{} ({})", info.name, info.about)).collect();
-        return Err(Error::source(word, wrong, accepted.join("; ")));
-    };
-    (info.open)(word, options)
+    match SOURCES.iter().find(|info| (info.is)(word)) {
+        Some(info) => (info.open)(word, options),
+        None => Err(unknown(word)),
+    }
+}
+
+/// What is wrong with a word that no source takes, and what was probably meant.
+fn unknown(word: &str) -> Error {
+    let path = Path::new(word);
+    if path.is_file() && folder::is_map(word) {
+        return Error::source(word, "one map, no video", "the folder it is in, or `depthplanes detect` for one map");
+    }
+    let recording = word.rsplit_once(':').filter(|(path, _)| Path::new(path).exists());
+    if let Some((path, topic)) = recording {
+        return Error::source(word, format!("the topic {topic} begins without a slash"), format!("{path}:/{topic}"));
+    }
+    let wrong = if path.exists() { "no source of frames" } else { "there is no such file or folder" };
+    let accepted: Vec<&str> = SOURCES.iter().map(|info| info.about).collect();
+    Error::source(word, wrong, accepted.join("; "))
 }

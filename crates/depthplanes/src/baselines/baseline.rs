@@ -51,6 +51,7 @@ pub(super) const fn row<B: Baseline>() -> MethodInfo {
         about: B::ABOUT,
         stages: B::STAGES,
         tells_curved: false,
+        bytes_per_pixel: [144, 144],
         params: B::PARAMS,
         build: |values| {
             let values = Values { params: B::PARAMS, values };

@@ -56,6 +56,11 @@ impl GroundFinder {
         GroundFinder { up, ..self }
     }
 
+    /// As [`GroundFinder::up`], between two frames.
+    pub fn set_up(&mut self, up: Up) {
+        self.up = up;
+    }
+
     /// With the camera's height above the floor that it stands on, if that is known: of several levels the one nearest to
     /// it is the floor, such as the landing before stairs that lead down. Without it the lowest is.
     ///

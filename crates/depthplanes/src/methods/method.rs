@@ -20,6 +20,9 @@ pub struct MethodInfo {
     pub stages: &'static [&'static str],
     /// Whether it tells curved surfaces from planes and can report them.
     pub tells_curved: bool,
+    /// Bytes that it uses for a pixel of a map, and bytes that it reserves for the worst map of that size, as measured on maps
+    /// of 3 and 12 million pixels.
+    pub bytes_per_pixel: [u64; 2],
     /// Its parameters, in the order of [`MethodInfo::of_values`].
     pub params: &'static [Param],
     /// Makes the method from one accepted value for each parameter, in order.

@@ -52,7 +52,7 @@ impl Rays {
     /// they are not; `median` finds the median of q.
     pub(crate) fn scaled(sensor: &Sensor, [width, height]: [usize; 2], median: impl FnOnce() -> f64) -> Self {
         let rays = Rays::of(sensor, width, height);
-        if sensor.intrinsics.is_some() && sensor.value_kind != ValueKind::Disparity {
+        if sensor.is_metric() {
             return rays;
         }
         Rays { slope: 1.0 / median(), offset: 0.0, ..rays }

@@ -86,6 +86,11 @@ impl Tracker {
         Tracker { kept_frames, ..self }
     }
 
+    /// Forgets all planes: ids begin at 1 again.
+    pub fn forget(&mut self) {
+        *self = Tracker::default().kept_frames(self.kept_frames);
+    }
+
     /// Takes in the next frame's planes. `pose` is the camera's, if it is known; without it, or without that of the frame
     /// before, the motion is estimated.
     ///

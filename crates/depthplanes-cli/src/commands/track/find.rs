@@ -2,9 +2,9 @@
 
 use crate::args::Track;
 use crate::failure::{Failure, Outcome};
-use crate::run::{Recipe, Runner};
+use crate::run::Recipe;
 use depthplanes::Detection;
-use depthplanes::ground::{GroundFinder, Up};
+use depthplanes::ground::GroundFinder;
 use depthplanes_io::outputs;
 use depthplanes_video::VideoFrame;
 use serde_json::Value;
@@ -38,17 +38,19 @@ pub(super) struct Searched {
     pub(super) outcome: Outcome<(VideoFrame, Outcome<Found>)>,
 }
 
-/// Finds the planes of one frame after the other.
-pub(super) struct Finder<'a> {
-    wanted: &'a Track,
-    runner: Runner<'a>,
-    ground: GroundFinder,
+/// Finds what there is in one frame after the other.
+pub(super) struct Finder {
+    finder: depthplanes_video::Finder,
+    /// Whether the picture of a frame is that of its ground.
+    draws_ground: bool,
 }
 
-impl<'a> Finder<'a> {
-    pub(super) fn new(wanted: &'a Track, recipe: &'a Recipe) -> Outcome<Self> {
+impl Finder {
+    pub(super) fn new(wanted: &Track, recipe: &Recipe) -> Outcome<Self> {
         let ground = GroundFinder::default().camera_height_m(wanted.camera_height)?;
-        Ok(Finder { wanted, runner: Runner::new(recipe), ground })
+        let planes = depthplanes_video::Finder::new(recipe.detector());
+        let finder = if wanted.floor { planes.with_ground(ground, wanted.up)? } else { planes };
+        Ok(Finder { finder, draws_ground: wanted.overlays.is_some() })
     }
 
     pub(super) fn search(&mut self, read: Read, dropped: u64) -> Searched {
@@ -61,31 +63,14 @@ impl<'a> Finder<'a> {
     }
 
     fn find(&mut self, video: &VideoFrame) -> Outcome<Found> {
-        let detection = self.runner.detect(&video.frame, 0)?.detection;
-        let ground = if self.wanted.floor { Some(self.ground(video, &detection)?) } else { None };
-        Ok(Found { detection, ground })
-    }
-
-    /// Up as it is stated, or else as the source says it; camera coordinates.
-    fn up(&self, video: &VideoFrame) -> Outcome<Up> {
-        let stated = match (self.wanted.world_up, &video.pose) {
-            (Some(up), Some(pose)) => Some(pose.to_camera(up)),
-            (Some(_), None) => {
-                return Err(Failure::request(format!("--world-up: {} has no pose; state --up", video.name)));
-            }
-            (None, _) => self.wanted.up,
-        };
-        Ok(stated.or(video.up).map_or(Ok(Up::Estimated), Up::known)?)
-    }
-
-    fn ground(&mut self, video: &VideoFrame, detection: &Detection) -> Outcome<Ground> {
         let VideoFrame { name, frame, .. } = video;
-        let known = self.up(video)?;
-        self.ground = std::mem::take(&mut self.ground).up(known);
-        let (view, sensor) = (frame.view()?, &frame.sensor);
-        let found = self.ground.find(view, detection, sensor)?;
-        let picture = || outputs::ground_png(view, sensor, detection, found);
-        let png = self.wanted.overlays.as_ref().map(|_| picture()).transpose()?;
-        Ok(Ground { record: outputs::ground_record(name, found, known), png })
+        let found = self.finder.find(video)?;
+        let detection = found.detection;
+        let picture = |ground| outputs::ground_png(frame.view()?, &frame.sensor, detection, ground);
+        let ground = |ground| -> Outcome<Ground> {
+            let png = if self.draws_ground { Some(picture(ground)?) } else { None };
+            Ok(Ground { record: outputs::ground_record(name, ground, found.up), png })
+        };
+        Ok(Found { detection: detection.clone(), ground: found.ground.map(ground).transpose()? })
     }
 }

@@ -3,7 +3,8 @@
 use super::find::Ground;
 use crate::args::Track;
 use crate::failure::note;
-use depthplanes_video::VideoFrame;
+use crate::show;
+use depthplanes_video::{StatedUp, VideoFrame};
 use std::collections::BTreeSet;
 
 /// Times the usual step from which on time jumps.
@@ -18,6 +19,8 @@ pub(super) struct Watch {
     time_s: Option<f64>,
     step_s: Option<f64>,
     jumps: u64,
+    /// Whether a preset is stated, which may have no camera.
+    has_preset: bool,
     /// The flag that states up, if one does.
     up_by: Option<&'static str>,
     /// Frames in which a floor was looked for, and those in which there is one.
@@ -27,8 +30,12 @@ pub(super) struct Watch {
 
 impl Watch {
     pub(super) fn new(wanted: &Track) -> Self {
-        let up_by = wanted.world_up.map(|_| "--world-up").or(wanted.up.map(|_| "--up"));
-        Watch { up_by, ..Watch::default() }
+        let up_by = match wanted.up {
+            StatedUp::Nothing => None,
+            StatedUp::Camera(_) => Some("--up"),
+            StatedUp::World(_) => Some("--world-up"),
+        };
+        Watch { up_by, has_preset: wanted.reading.preset.is_some(), ..Watch::default() }
     }
 
     /// Counts whether there is a floor.
@@ -42,8 +49,9 @@ impl Watch {
         if let Some([width, height]) = self.size.replace(size).filter(|before| *before != size) {
             note(&format!("{name}: {} x {} pixels, before {width} x {height}: all planes are new", size[0], size[1]));
         }
-        for warning in &frame.frame.warnings {
-            if (self.said.len() as u64) < MOST && self.said.insert(warning.clone()) {
+        let hint = show::camera_hint(&frame.frame, self.has_preset);
+        for warning in frame.frame.warnings.iter().map(String::as_str).chain(hint.lines()) {
+            if (self.said.len() as u64) < MOST && self.said.insert(warning.into()) {
                 note(&format!("{name}: {warning}"));
             }
         }

@@ -12,7 +12,7 @@ mod table;
 
 use super::follow::Followed;
 use crate::args::Track;
-use crate::failure::Outcome;
+use crate::failure::{Failure, Outcome};
 use output::Output;
 use std::io::Write;
 use std::path::Path;
@@ -29,12 +29,7 @@ impl<'a> Writer<'a> {
     /// What the machine says.
     pub(super) fn new(wanted: &'a Track) -> Outcome<Self> {
         let mut outputs: Vec<Box<dyn Output + 'a>> = Vec::new();
-        match wanted.out.as_deref() {
-            Some(path) if is_standard(path) => outputs.push(Box::new(lines::Lines::standard())),
-            Some(path) if has_extension(path, "mcap") => outputs.push(Box::new(mcap::Recording::new(path)?)),
-            Some(path) => outputs.push(Box::new(lines::Lines::new(path)?)),
-            None => (),
-        }
+        outputs.extend(wanted.out.as_deref().map(of_name).transpose()?);
         if let Some(folder) = &wanted.labels {
             outputs.push(Box::new(images::Labels::new(folder)?));
         }
@@ -76,6 +71,17 @@ fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-fn has_extension(path: &Path, extension: &str) -> bool {
-    path.extension().is_some_and(|own| own.eq_ignore_ascii_case(extension))
+/// The output that a file's name asks for; what has no extension, such as a pipe, takes lines.
+fn of_name(path: &Path) -> Outcome<Box<dyn Output>> {
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
+    Ok(match extension.as_deref() {
+        _ if is_standard(path) => Box::new(lines::Lines::standard()),
+        None | Some("jsonl" | "ndjson") => Box::new(lines::Lines::new(path)?),
+        Some("mcap") => Box::new(mcap::Recording::new(path)?),
+        Some(other) => {
+            let accepted =
+                ".jsonl for a JSON line for each frame, .mcap for a recording for Foxglove, - for standard output";
+            return Err(Failure::request(format!("--out: {} ends in .{other}; accepted: {accepted}", path.display())));
+        }
+    })
 }

@@ -27,7 +27,7 @@ pub(super) struct Camera {
 pub(super) fn put(frame: &Frame, folder: &Path) -> Outcome<(Camera, bool)> {
     let (width, height) = (frame.width, frame.height);
     let inverse: Vec<f64> = with_view!(frame.view()?, view => inverse_depths(&view, frame.sensor.value_kind));
-    let is_metric = frame.sensor.intrinsics.is_some() && frame.sensor.value_kind != ValueKind::Disparity;
+    let is_metric = frame.sensor.is_metric();
     let median = if is_metric { 1.0 } else { median(&inverse) };
     let depth = inverse.iter().map(|&inverse| if inverse > 0.0 { (median / inverse) as f32 } else { 0.0 }).collect();
     write_file(&folder.join("values.npy"), &map_npy(width, height, &valid_values(frame)?))?;

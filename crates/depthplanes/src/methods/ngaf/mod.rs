@@ -30,6 +30,7 @@ pub(super) static INFO: MethodInfo = MethodInfo {
             plane (Hoa, Minh, Dung 2017).",
     stages: &["enhance", "group", "select", "fit", "label"],
     tells_curved: false,
+    bytes_per_pixel: [16, 64],
     params: PARAMS,
     build: |values| Box::new(Runner::new(Ngaf::from_values(values))),
 };

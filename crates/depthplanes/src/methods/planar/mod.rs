@@ -46,6 +46,7 @@ pub(super) static INFO: MethodInfo = MethodInfo {
     about: "Finds true planes: regions that one plane explains to within the sensor's noise, in inverse depth or disparity.",
     stages: &["tiles", "grow", "merge", "judge", "assign", STAGES[0], STAGES[1], STAGES[2], STAGES[3]],
     tells_curved: true,
+    bytes_per_pixel: [24, 264],
     params: PARAMS,
     build: |values| Box::new(Whole::new(Planar::from_values(values))),
 };

@@ -15,6 +15,8 @@ const MOST: usize = 1000;
 /// Sums up each plane over the whole video.
 #[derive(Default)]
 pub(super) struct Table {
+    /// The last id: how many planes there were in all.
+    last_id: u32,
     summaries: BTreeMap<u32, Summary>,
 }
 
@@ -41,6 +43,7 @@ impl Output for Table {
         for plane in &frame.detection.planes {
             let Some(id) = frame.tracks.id_of(plane.label) else { continue };
             let index = frame.video.index;
+            self.last_id = self.last_id.max(id);
             let summary = self.summaries.entry(id).or_insert(Summary { first: index, ..Summary::default() });
             summary.last = index;
             summary.frames += 1;
@@ -61,6 +64,11 @@ impl Output for Table {
             [u64::from(*id), *frames, *first, *last, pixels / frames].iter().map(u64::to_string).collect()
         }));
         out.write_all(aligned(&[Align::Right; 5], &rows).as_bytes())?;
+        match (self.last_id as usize).saturating_sub(ROWS) {
+            0 => (),
+            1 => writeln!(out, "and 1 plane seen in fewer pixels; --out FILE.jsonl has all")?,
+            more => writeln!(out, "and {more} planes seen in fewer pixels; --out FILE.jsonl has all")?,
+        }
         Ok(out.flush()?)
     }
 }
