@@ -204,6 +204,17 @@ def test_without_a_chain_it_is_said_and_estimated(track, tmp_path):
     assert "no chain of transforms" in said
 
 
+def test_maps_in_a_frame_that_is_no_optical_one_are_said(track, tmp_path):
+    """As some simulators publish them: x ahead and z up, which the pixels are not in."""
+    bag, level = Bag(tmp_path / "bag"), np.array([0.0, 0.0, 0.0, 1.0])
+    bag.transforms([("base_link", OPTICAL, level), ("base_link", SENSOR, level)])
+    bag.reading(START_NS, [0, 0, GRAVITY])
+    bag.frame(START_NS + 1, depth_of(up_of(20), np.random.default_rng(3)))
+    bag.close()
+    (ground,), said = track(tmp_path / "bag")
+    assert ground["floor"] is None and "no frame has a floor with the up that the source says" in said
+
+
 def test_one_of_several_sensors_is_stated(track, tmp_path):
     """A gyroscope alone, as RealSense's has a topic of its own, is none of them."""
     up = up_of(25)

@@ -108,6 +108,12 @@ def test_what_is_recorded_is_what_track_finds(record, track):
         assert np.allclose(matrix, line["pose"]["rotation"], atol=1e-5)
 
 
+def test_a_recording_has_the_name_of_its_source(record):
+    (chunk,) = (chunk for chunk in RrdReader(str(record(SCENE))).stream() if chunk.entity_path == "/__properties")
+    batch = chunk.to_record_batch()
+    assert batch.column(batch.schema.names.index("RecordingInfo:name")).to_pylist() == [[SCENE]]
+
+
 def test_ids_have_the_colours_of_the_pictures(record):
     path = record(SCENE)
     contexts = [columns for name, is_static, columns in chunks(path) if name == CAMERA and is_static]

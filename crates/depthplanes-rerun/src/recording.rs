@@ -9,11 +9,15 @@ use re_chunk::Chunk;
 use re_log_encoding::{Encoder, EncodingOptions};
 use re_log_types::{LogMsg, SetStoreInfo, StoreId, StoreInfo, StoreKind, StoreSource, TimePoint};
 use re_sdk_types::AsComponents;
+use re_sdk_types::archetypes::RecordingInfo;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// What viewers call what these recordings are of; they keep the layout of windows for each such name.
 const APPLICATION: &str = "depthplanes";
+
+/// The entity with what is known of a recording as a whole.
+const PROPERTIES: &str = "__properties";
 
 /// A file that is written.
 pub(crate) struct Recording {
@@ -23,11 +27,11 @@ pub(crate) struct Recording {
 }
 
 impl Recording {
-    /// Makes the file.
+    /// Makes the file of a recording that viewers call by that name.
     ///
     /// # Errors
     /// What the machine says.
-    pub(crate) fn new(path: &Path) -> Outcome<Self> {
+    pub(crate) fn new(path: &Path, name: &str) -> Outcome<Self> {
         let wrong = |error: &dyn std::fmt::Display| Failure::machine(format!("{}: {error}", path.display()));
         let file = File::create(path).map_err(|error| wrong(&error))?;
         let encoder = Encoder::new_eager(CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED, file);
@@ -35,6 +39,7 @@ impl Recording {
         let mut recording = Recording { path: path.into(), encoder: encoder.map_err(|error| wrong(&error))?, store };
         let info = StoreInfo::new(recording.store.clone(), StoreSource::Other(APPLICATION.into()));
         recording.append(&LogMsg::SetStoreInfo(SetStoreInfo { row_id: *re_chunk::RowId::new(), info }))?;
+        recording.log(PROPERTIES, &TimePoint::default(), &RecordingInfo::new().with_name(name))?;
         Ok(recording)
     }
 

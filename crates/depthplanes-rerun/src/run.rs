@@ -31,7 +31,7 @@ pub(crate) struct Summary {
 pub(crate) fn run(wanted: &Wanted, stop: &AtomicBool) -> Outcome<Summary> {
     let mut source = open(&wanted.source, &SourceOptions::default().read(wanted.read.clone()))?;
     let mut search = Search::new(wanted)?;
-    let mut scene = Scene::new(Recording::new(&wanted.out)?)?;
+    let mut scene = Scene::new(Recording::new(&wanted.out, &wanted.source)?)?;
     let (mut clock, mut said, mut summary) = (Clock::default(), BTreeSet::new(), Summary { frames: 0, failed: 0 });
     for at in 0..wanted.frames.unwrap_or(u64::MAX) {
         let Some(frame) = next(source.as_mut(), stop) else { break };
