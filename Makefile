@@ -99,7 +99,7 @@ package: ## Make the packages of all crates and build each from what is in it
 rustdoc:
 	$(call say,documentation)
 	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --no-deps --package depthplanes --package depthplanes-io --package depthplanes-video --package depthplanes-serve \
-		--package depthplanes-ros2 --features depthplanes-io/exr
+		--package depthplanes-ros2 --package depthplanes-rerun --features depthplanes-io/exr
 
 targets: ## Check that the library compiles for WebAssembly, 64-bit ARM and 32-bit x86
 	$(call say,other targets)

@@ -35,12 +35,21 @@ def program():
     return build("-p", "depthplanes-cli") / "depthplanes"
 
 
+def of_tests(name):
+    """A program as `make test` has built it already; a release of those with many crates takes minutes."""
+    command = f"cargo build --workspace --profile test --features depthplanes/serde --bin {name}"
+    subprocess.run(command.split(), cwd=ROOT, check=True)
+    return ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "debug" / name
+
+
 @pytest.fixture(scope="session")
 def ros2_program():
-    """The node for ROS 2 as `make test` has built it already; a release of it takes minutes."""
-    command = "cargo build --workspace --profile test --features depthplanes/serde --bin depthplanes-ros2"
-    subprocess.run(command.split(), cwd=ROOT, check=True)
-    return ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "debug" / "depthplanes-ros2"
+    return of_tests("depthplanes-ros2")
+
+
+@pytest.fixture(scope="session")
+def rerun_program():
+    return of_tests("depthplanes-rerun")
 
 
 @pytest.fixture(scope="session")

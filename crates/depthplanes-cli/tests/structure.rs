@@ -88,11 +88,12 @@ fn unsafe_code_stands_in_the_kernels_alone() {
     assert_eq!(files_with("crates/depthplanes-serve/src", &["unsafe "]), [""; 0]);
     assert_eq!(files_with("crates/depthplanes-cli/src", &["unsafe "]), [""; 0]);
     assert_eq!(files_with("crates/depthplanes-ros2/src", &["unsafe "]), [""; 0]);
+    assert_eq!(files_with("crates/depthplanes-rerun/src", &["unsafe "]), [""; 0]);
 }
 
 #[test]
 fn the_argument_parser_is_known_to_one_module() {
-    for krate in ["depthplanes-cli", "depthplanes-ros2"] {
+    for krate in ["depthplanes-cli", "depthplanes-ros2", "depthplanes-rerun"] {
         for name in files_with(&format!("crates/{krate}/src"), &["clap"]) {
             assert!(name == "args.rs" || name.starts_with("args/"), "{name}");
         }
@@ -122,6 +123,7 @@ fn nobody_but_tests_and_benchmarks_asks_for_stages_by_themselves() {
         "depthplanes-serve",
         "depthplanes-cli",
         "depthplanes-ros2",
+        "depthplanes-rerun",
     ] {
         let folder = &format!("crates/{krate}/src");
         assert_eq!(files_with(folder, &["::internals"]), [""; 0], "{folder}");

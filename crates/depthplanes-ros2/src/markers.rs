@@ -1,10 +1,11 @@
 //! Outlines and ids of planes as RViz and Foxglove show them.
 
 use crate::messages::{Colour, Header, Marker, MarkerArray, Point, Pose};
-use depthplanes::outline::{Outline, Outliner};
+use depthplanes::outline::Outliner;
 use depthplanes::track::Tracks;
 use depthplanes::{Detection, Result, Sensor};
-use depthplanes_io::outputs::colour;
+use depthplanes_io::outputs::id_colour;
+use depthplanes_video::{DrawnPlane, drawn_planes};
 
 /// Width of outlines, metres.
 const LINE_M: f64 = 0.01;
@@ -24,27 +25,23 @@ pub(crate) fn markers(
 ) -> Result<MarkerArray> {
     let outlines = outliner.outline_seen_by(detection, sensor)?;
     let mut markers = vec![Marker { header: header.clone(), action: Marker::DELETE_ALL, ..Marker::default() }];
-    for plane in &detection.planes {
-        let Some(id) = tracks.id_of(plane.label) else { continue };
-        let Some(outline) = outlines.get(plane.label).filter(Outline::is_metric) else { continue };
-        markers.push(rings(outline, marker(id, header)));
-        markers.extend(plane.metric.map(|metric| text(metric.centroid_m, id, marker(id, header))));
+    for plane in drawn_planes(detection, tracks, outlines) {
+        markers.push(rings(&plane, marker(plane.id, header)));
+        markers.extend(plane.centroid_m().map(|at| text(at, plane.id, marker(plane.id, header))));
     }
     Ok(MarkerArray { markers })
 }
 
 fn marker(id: u32, header: &Header) -> Marker {
-    let label = (id.saturating_sub(1) % u32::from(u16::MAX)) as u16 + 1;
-    let [r, g, b] = colour(label).map(|part| f32::from(part) / 255.0);
+    let [r, g, b] = id_colour(id).map(|part| f32::from(part) / 255.0);
     let color = Colour { r, g, b, a: 1.0 };
     Marker { header: header.clone(), id: id as i32, action: Marker::ADD, color, ..Marker::default() }
 }
 
 /// The rings of all parts of a plane and of their holes, each closed.
-fn rings(outline: Outline<'_>, marker: Marker) -> Marker {
-    let rings = outline.polygons().flat_map(|polygon| std::iter::once(polygon.outer()).chain(polygon.holes()));
+fn rings(plane: &DrawnPlane<'_>, marker: Marker) -> Marker {
     let mut points: Vec<Point> = Vec::new();
-    for ring in rings.filter_map(|ring| ring.points_m()) {
+    for ring in plane.rings_m() {
         let ring: Vec<Point> = ring.map(Point::from).collect();
         let next = ring.iter().cycle().skip(1);
         points.extend(ring.iter().zip(next).flat_map(|(&from, &to)| [from, to]));

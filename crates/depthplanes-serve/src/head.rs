@@ -7,7 +7,7 @@ use axum::body::Bytes;
 use depthplanes::Plane;
 use depthplanes::ground::Ground;
 use depthplanes::outline::Outlines;
-use depthplanes_io::outputs::{colour, depth_m};
+use depthplanes_io::outputs::{depth_m, id_colour};
 use depthplanes_video::VideoFrame;
 use serde_json::{Value, json};
 use std::time::Instant;
@@ -77,7 +77,7 @@ fn plane(plane: &Plane, found: &Found<'_>, kind: depthplanes::ValueKind) -> Valu
     json!({
         "id": id,
         "label": plane.label,
-        "colour": colour(1 + ((id - 1) % u32::from(u16::MAX)) as u16),
+        "colour": id_colour(id),
         "age": track.map(|track| track.age),
         "state": track.map(|track| track.state.name()),
         "class": class.map(|of| of.class.name()),

@@ -12,9 +12,11 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod drawn;
 mod error;
 mod finder;
 mod frame;
+mod gravity;
 pub mod mcap;
 mod messages;
 pub mod natural;
@@ -26,6 +28,7 @@ mod stated_up;
 mod tracked;
 mod word;
 
+pub use drawn::{DrawnPlane, POSE_AHEAD, drawn_planes};
 pub use error::{Error, Result};
 pub use finder::{Finder, Found};
 pub use frame::VideoFrame;

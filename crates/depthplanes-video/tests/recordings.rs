@@ -18,30 +18,65 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// `sensor_msgs/msg/Image` in CDR: a map with that value everywhere.
+/// A message in CDR, little-endian.
+struct Cdr(Vec<u8>);
+
+impl Cdr {
+    /// With its header.
+    fn new(second: u32, frame_id: &str) -> Self {
+        Cdr(vec![0, 1, 0, 0]).header(second, frame_id)
+    }
+
+    fn header(self, second: u32, frame_id: &str) -> Self {
+        self.number(second).number(500_000_000).text(frame_id)
+    }
+
+    /// Zeros up to a multiple of so many bytes, counted from behind the encoding.
+    fn aligned(mut self, to: usize) -> Self {
+        self.0.resize((self.0.len() - 4).next_multiple_of(to) + 4, 0);
+        self
+    }
+
+    fn number(self, number: u32) -> Self {
+        self.aligned(4).bytes(&number.to_le_bytes())
+    }
+
+    fn text(self, text: &str) -> Self {
+        self.number(text.len() as u32 + 1).bytes(text.as_bytes()).bytes(&[0])
+    }
+
+    fn floats(self, numbers: &[f64]) -> Self {
+        numbers.iter().fold(self.aligned(8), |cdr, number| cdr.bytes(&number.to_le_bytes()))
+    }
+
+    fn bytes(mut self, bytes: &[u8]) -> Self {
+        self.0.extend(bytes);
+        self
+    }
+}
+
+/// `sensor_msgs/msg/Image`: a map with that value everywhere.
 fn image(value: u16, encoding: &str, second: u32) -> Vec<u8> {
-    let mut cdr = vec![0, 1, 0, 0];
-    let number = |cdr: &mut Vec<u8>, number: u32| {
-        cdr.resize(cdr.len().next_multiple_of(4), 0);
-        cdr.extend(number.to_le_bytes());
-    };
-    let text = |cdr: &mut Vec<u8>, text: &str| {
-        number(cdr, text.len() as u32 + 1);
-        cdr.extend(text.as_bytes());
-        cdr.push(0);
-    };
-    number(&mut cdr, second);
-    number(&mut cdr, 500_000_000);
-    text(&mut cdr, "optical");
-    number(&mut cdr, SIZE[1]);
-    number(&mut cdr, SIZE[0]);
-    text(&mut cdr, encoding);
-    cdr.push(0); // little-endian
-    number(&mut cdr, 2 * SIZE[0]);
-    number(&mut cdr, 2 * SIZE[0] * SIZE[1]);
+    let cdr = Cdr::new(second, "optical").number(SIZE[1]).number(SIZE[0]).text(encoding).bytes(&[0]);
     // Different pixels, so that a chunk is not a few bytes.
-    cdr.extend((0..SIZE[0] * SIZE[1]).flat_map(|at| (value + (at * at % 97) as u16).to_le_bytes()));
-    cdr
+    let pixels: Vec<u8> = (0..SIZE[0] * SIZE[1]).flat_map(|at| (value + (at * at % 97) as u16).to_le_bytes()).collect();
+    cdr.number(2 * SIZE[0]).number(2 * SIZE[0] * SIZE[1]).bytes(&pixels).0
+}
+
+/// `sensor_msgs/msg/Imu` with that specific force; without an orientation and a gyroscope.
+fn imu(force: [f64; 3], frame_id: &str) -> Vec<u8> {
+    let unknown = [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let cdr = Cdr::new(0, frame_id).floats(&[0.0; 4]).floats(&unknown);
+    cdr.floats(&[0.0; 3]).floats(&unknown).floats(&force).floats(&[0.0; 9]).0
+}
+
+/// `tf2_msgs/msg/TFMessage`: frames of coordinates in their parents, as quaternions.
+fn transforms(frames: &[(&str, &str, [f64; 4])]) -> Vec<u8> {
+    let begun = Cdr(vec![0, 1, 0, 0]).number(frames.len() as u32);
+    let add = |cdr: Cdr, (parent, child, turn): &(&str, &str, [f64; 4])| {
+        cdr.header(0, parent).text(child).floats(&[0.1, 0.2, 0.3]).floats(turn)
+    };
+    frames.iter().fold(begun, add).0
 }
 
 fn topic(name: &'static str) -> Topic<'static> {
@@ -121,9 +156,49 @@ fn records(compression: Option<&str>) -> (Vec<u8>, Vec<usize>) {
     (bytes, ends)
 }
 
+const IMU: &str = "/imu/data";
+/// The axes of a camera's optical frame in the camera's (REP 103).
+const OPTICAL: (&str, &str, [f64; 4]) = ("camera", "optical", [-0.5, 0.5, -0.5, 0.5]);
+
+/// A topic, when in nanoseconds, and a message.
+type Said = (u16, u64, Vec<u8>);
+
+/// A recording with an inertial sensor and transforms beside the maps, a chunk for each frame with what `more` says beside it;
+/// and where each chunk ends.
+fn beside(more: impl Fn(u64) -> Vec<Said>) -> (Vec<u8>, Vec<usize>) {
+    let other = |name, schema| Topic { name, schema, ..topic("") };
+    let topics = [
+        topic(TOPIC),
+        other(IMU, "sensor_msgs/msg/Imu"),
+        other("/tf_static", "tf2_msgs/msg/TFMessage"),
+        other("/base/imu", "sensor_msgs/msg/Imu"),
+    ];
+    let mut bytes = Vec::new();
+    let mut writer = Writer::new(&mut bytes, &topics).unwrap();
+    for index in 0..FRAMES {
+        let time = u64::from(index) * 1_000_000_000 + 7;
+        let mut said = more(time);
+        said.push((0, time, image(1000 + index, "16UC1", index.into())));
+        let said: Vec<_> = said.iter().map(|(topic, time, data)| (*topic, *time, &data[..])).collect();
+        writer.chunk(&said).unwrap();
+    }
+    writer.finish().unwrap();
+    let heads = heads(&bytes);
+    let ends = heads.windows(2).filter(|pair| bytes[pair[0]] == 6).map(|pair| pair[1]).collect();
+    (bytes, ends)
+}
+
+/// One whose sensor, level under a camera, rests.
+fn with_gravity() -> (Vec<u8>, Vec<usize>) {
+    beside(|time| {
+        let frames = transforms(&[OPTICAL, ("camera", "imu", [0.0, 0.0, 0.0, 1.0])]);
+        vec![(2, time, frames), (1, time, imu([0.0, 0.0, 9.8], "imu"))]
+    })
+}
+
 /// All forms.
-fn recordings() -> [(Vec<u8>, Vec<usize>); 4] {
-    [recording(), records(None), records(Some("")), records(Some("zstd"))]
+fn recordings() -> [(Vec<u8>, Vec<usize>); 5] {
+    [recording(), with_gravity(), records(None), records(Some("")), records(Some("zstd"))]
 }
 
 fn frames(word: &str) -> Result<Vec<Result<VideoFrame, Error>>, Error> {
@@ -212,7 +287,7 @@ fn a_file_that_is_cut_off_anywhere_gives_every_whole_message_and_one_error() {
 fn a_byte_that_is_flipped_leaves_what_stands_before_it() {
     let folder = folder("mcap_flipped");
     let path = folder.join("walk.mcap");
-    for (bytes, ends) in [recording(), records(Some("zstd"))] {
+    for (bytes, ends) in [recording(), with_gravity(), records(Some("zstd"))] {
         let heads = heads(&bytes);
         for (at, mask) in (8..bytes.len()).step_by(11).flat_map(|at| [(at, 0x01), (at, 0x80), (at, 0xff)]) {
             let mut other = bytes.clone();
@@ -239,7 +314,7 @@ proptest! {
     fn bytes_that_are_changed_never_make_it_panic(
         changes in prop::collection::vec((0usize..10_000, any::<u8>()), 1..20),
         cut in 0usize..10_000,
-        form in 0usize..4,
+        form in 0usize..5,
     ) {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("mcap_random");
         std::fs::create_dir_all(&folder).unwrap();
@@ -322,16 +397,92 @@ fn a_bag_without_metadata_is_its_files_in_natural_order() {
     assert!(error.contains("a bag in SQLite") && error.contains("ros2 bag convert"), "{error}");
 }
 
+/// Up of each frame of these bytes, and the notes of the last.
+fn ups(path: &Path, bytes: &[u8], topics: &str) -> (Vec<Option<[f64; 3]>>, Vec<String>) {
+    std::fs::write(path, bytes).unwrap();
+    let found = frames(&format!("{}{topics}", path.display())).unwrap();
+    let found: Vec<VideoFrame> = found.into_iter().map(Result::unwrap).collect();
+    (found.iter().map(|frame| frame.up).collect(), found[found.len() - 1].frame.warnings.clone())
+}
+
+/// Whether every frame has that direction.
+fn assert_all(ups: &[Option<[f64; 3]>], direction: [f64; 3]) {
+    for up in ups {
+        let up = up.unwrap();
+        let length = up.iter().map(|x| x * x).sum::<f64>().sqrt();
+        assert!(up.iter().zip(direction).all(|(a, b)| (a / length - b).abs() < 1e-6), "{up:?} {direction:?}");
+    }
+}
+
+#[test]
+fn what_an_accelerometer_says_is_turned_into_the_cameras_axes() {
+    let path = folder("gravity").join("walk.mcap");
+    // Level, x ahead and z up: y of the optical frame points down.
+    let (up, notes) = ups(&path, &with_gravity().0, "");
+    assert_all(&up, [0.0, -1.0, 0.0]);
+    assert!(notes.iter().all(|note| !note.contains("up is")), "{notes:?}");
+    // The same by an axis of its own, and at any frame that is gone to.
+    let (bytes, _) = beside(|time| vec![(1, time, imu([0.0, -9.0, -4.0], "optical"))]);
+    let (sine, cosine) = (-4.0 / 97f64.sqrt(), -9.0 / 97f64.sqrt());
+    assert_all(&ups(&path, &bytes, "").0, [0.0, cosine, sine]);
+    let mut source = open(path.to_str().unwrap(), &SourceOptions::default()).unwrap();
+    for index in [4, 1] {
+        assert!(source.seek(index));
+        let frame = source.next_frame().unwrap().unwrap();
+        assert_eq!((frame.index, first(&frame)), (index, 1000 + index as u16));
+        assert_all(&[frame.up], [0.0, cosine, sine]);
+    }
+    assert!(source.seek(100) && source.next_frame().is_none());
+    // What was said half a second before a frame without a gyroscope is no longer so.
+    let (bytes, _) = beside(|time| vec![(1, time.saturating_sub(500_000_000), imu([0.0, -9.8, 0.0], "optical"))]);
+    let (late, _) = ups(&path, &bytes, "");
+    assert!(late[0].is_some() && late[1..].iter().all(Option::is_none), "{late:?}");
+}
+
+#[test]
+fn why_up_is_not_known_is_said() {
+    let path = folder("gravity_notes").join("walk.mcap");
+    let rest = [0.0, 0.0, 9.8];
+    let note = |bytes: &[u8], topics: &str| {
+        let (up, notes) = ups(&path, bytes, topics);
+        assert!(up.iter().all(Option::is_none), "{up:?}");
+        notes.into_iter().find(|note| note.starts_with("up is not taken from ")).unwrap_or_default()
+    };
+    let (bytes, _) = beside(|time| vec![(1, time, imu(rest, "imu")), (2, time, transforms(&[OPTICAL]))]);
+    let said = note(&bytes, "");
+    assert!(said.contains("from its frame_id `imu` to that of the maps, `optical`") && said.contains(IMU), "{said}");
+    // In units of gravity; and a driver that takes gravity out.
+    for force in [[0.0, -1.0, 0.0], [0.1, 0.0, 0.0]] {
+        let (bytes, _) = beside(|time| vec![(1, time, imu(force, "optical"))]);
+        let said = note(&bytes, "");
+        assert!(said.contains(IMU) && said.contains("gravity's 9.81"), "{said}");
+    }
+    // Two sensors, until one is stated; one of them alone measures accelerations.
+    let two = |other| move |time| vec![(1, time, imu(rest, "optical")), (3, time, imu(other, "optical"))];
+    let (bytes, _) = beside(two([9.8, 0.0, 0.0]));
+    let said = note(&bytes, "");
+    assert!(said.contains("from /base/imu nor /imu/data") && said.contains(":/base/imu"), "{said}");
+    assert_all(&ups(&path, &bytes, &format!(":{TOPIC}:{IMU}")).0, [0.0, 0.0, 1.0]);
+    assert_all(&ups(&path, &bytes, ":/base/imu").0, [1.0, 0.0, 0.0]);
+    let (bytes, _) = beside(two([0.0; 3]));
+    assert_all(&ups(&path, &bytes, "").0, [0.0, 0.0, 1.0]);
+    let said = note(&bytes, ":/base/imu");
+    assert!(said.contains("/base/imu, which measures no acceleration"), "{said}");
+    // No sensor, nothing said.
+    assert_eq!(note(&recording().0, ""), "");
+}
+
 #[test]
 #[ignore = "writes into fuzz/corpus"]
 fn seeds_are_written() {
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/source");
     std::fs::create_dir_all(&corpus).unwrap();
-    let [chunks, single, plain, zstd] = recordings().map(|(bytes, _)| bytes);
+    let [chunks, gravity, single, plain, zstd] = recordings().map(|(bytes, _)| bytes);
     let bag = b"rosbag2_bagfile_information:\n  relative_file_paths:\n    - 0.mcap\n  storage_identifier: mcap\n";
     // The first byte picks the source, as the target says.
     for (name, first, bytes) in [
         ("chunks", 0, &chunks[..]),
+        ("gravity", 0, &gravity),
         ("records", 0, &single),
         ("plain", 0, &plain),
         ("zstd", 0, &zstd),

@@ -127,9 +127,19 @@ fn a_synthetic_camera_moves_and_knows_where_it_is() {
     let mut still = open("scene:room:size=64x48,frames=2,speed=0,pose=none", &SourceOptions::default()).unwrap();
     let frames: Vec<VideoFrame> = all(still.as_mut()).into_iter().map(Result::unwrap).collect();
     assert!(frames[0].pose.is_none() && frames[0].frame.pixels != frames[1].frame.pixels, "the noise differs");
-    for word in
-        ["scene:room:frames=x", "scene:room:speed=inf", "scene:room:pose=some", "scene:nowhere", "scene:room:zoom=2"]
-    {
+    // Up is that of its world, if it is asked for it.
+    assert!(frames[0].up.is_none());
+    let mut knowing = open("scene:room:size=64x48,frames=2,up=known,pose=none", &SourceOptions::default()).unwrap();
+    let [x, y, z] = all(knowing.as_mut()).remove(1).unwrap().up.unwrap();
+    assert!((x * x + y * y + z * z - 1.0).abs() < 1e-12 && y < -0.9, "{x} {y} {z}");
+    for word in [
+        "scene:room:frames=x",
+        "scene:room:speed=inf",
+        "scene:room:pose=some",
+        "scene:room:up=0",
+        "scene:nowhere",
+        "scene:room:zoom=2",
+    ] {
         assert!(open(word, &SourceOptions::default()).is_err(), "{word}");
     }
 }

@@ -31,6 +31,11 @@ pub fn colour(label: u16) -> [u8; 3] {
     within_gamut(lightness - darker, chroma, hue)
 }
 
+/// The colour of a lasting id, from 1; from 65536 on the colours come again.
+pub fn id_colour(id: u32) -> [u8; 3] {
+    colour((id.saturating_sub(1) % u32::from(u16::MAX)) as u16 + 1)
+}
+
 /// The colours of labels `0..=planes`.
 pub(super) fn palette(planes: usize) -> Vec<[u8; 3]> {
     (0..=planes).map(|label| colour(label as u16)).collect()

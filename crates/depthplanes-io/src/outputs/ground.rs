@@ -8,9 +8,14 @@ use super::shade;
 use depthplanes::ground::{Floor, Ground, PlaneClass, Sector, marks};
 use depthplanes::{AnyView, Detection, Sensor};
 
-/// The colour of each mark, and its share.
+/// The colour of each mark, and its share in the picture; others are left grey.
 const COLOURS: [(u8, [u8; 3], f32); 3] =
     [(marks::FLOOR, [40, 190, 90], 0.5), (marks::OBSTACLE, [225, 50, 45], 0.55), (marks::DROP, [40, 100, 245], 0.65)];
+
+/// The colour in which the picture shows what a pixel of the ground is ([`marks`]); `None` where it leaves it grey.
+pub fn mark_colour(mark: u8) -> Option<[u8; 3]> {
+    COLOURS.iter().find(|(of, ..)| *of == mark).map(|(_, colour, _)| *colour)
+}
 /// Share of the colour of floor that is not free, which lies behind something.
 const BEHIND_SHARE: f32 = 0.2;
 const LINE: [u8; 3] = [255; 3];

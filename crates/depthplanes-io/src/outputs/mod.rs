@@ -33,12 +33,12 @@ mod table;
 mod times;
 mod tinted;
 
-pub use colour::colour;
+pub use colour::{colour, id_colour};
 pub use depth::depth_m;
 pub use error::OutputError;
 pub use files::{check_folder, check_paths, write_all, write_file};
 pub use grid::{grid_yaml_path, write_grid};
-pub use ground::ground_png;
+pub use ground::{ground_png, mark_colour};
 pub use ground_record::ground_record;
 pub use labels::{npy as labels_npy, png as labels_png};
 pub use mesh::mesh_ply;

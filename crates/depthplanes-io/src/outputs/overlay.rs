@@ -4,7 +4,7 @@
 //! With a legend the picture grows to the right; without, it has exactly the map's size. The scene
 //! itself is never covered, but for the small numbers that the legend refers to.
 
-use super::colour::{COLOUR_SHARE, colour, palette};
+use super::colour::{COLOUR_SHARE, colour, id_colour, palette};
 use super::error::OutputError;
 use super::output::{Output, Report, Writer};
 use super::picture::{Picture, blend};
@@ -73,8 +73,7 @@ pub fn tracked_png<'m>(
     }
     let pixels = shade::greys(map, sensor.value_kind);
     let mut picture = Picture { width: found.width, height: found.height, pixels };
-    let of_id = |&id: &u32| colour((id.saturating_sub(1) % u32::from(u16::MAX)) as u16 + 1);
-    let palette: Vec<[u8; 3]> = [colour(0)].into_iter().chain(ids.iter().map(of_id)).collect();
+    let palette: Vec<[u8; 3]> = [colour(0)].into_iter().chain(ids.iter().copied().map(id_colour)).collect();
     tint_planes(&mut picture, found, &palette, true);
     legend::number_planes(&mut picture, found, |label| ids[usize::from(label) - 1].to_string());
     Ok(picture.png())

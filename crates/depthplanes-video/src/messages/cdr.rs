@@ -57,6 +57,11 @@ impl<'a> Cdr<'a> {
         (0..count).map(|_| self.f64()).collect()
     }
 
+    /// Three numbers.
+    pub(super) fn vector(&mut self) -> Result<[f64; 3], String> {
+        Ok([self.f64()?, self.f64()?, self.f64()?])
+    }
+
     pub(super) fn bytes(&mut self) -> Result<&'a [u8], String> {
         let count = self.u32()?;
         self.take(count as usize, 1)

@@ -1,14 +1,15 @@
 //! What a message says, whatever its encoding.
 
+use depthplanes::track::CameraPose;
 use depthplanes_io::camera_file::{CameraFile, parse};
 use std::borrow::Cow;
 
-/// A message with a depth map or a camera.
+/// A message with a depth map, a camera, or what tells of gravity.
 #[derive(Debug)]
 pub(crate) struct Message<'a> {
     /// When it was taken, seconds; none where it does not say.
     pub(crate) stamp_s: Option<f64>,
-    /// The name of the camera's frame of coordinates.
+    /// The name of the frame of coordinates.
     pub(crate) frame_id: String,
     pub(crate) content: Content<'a>,
 }
@@ -21,6 +22,28 @@ pub(crate) enum Content<'a> {
     Packed { format: String, data: Cow<'a, [u8]> },
     /// A camera, in JSON with ROS's names.
     Camera(String),
+    /// What an inertial sensor measures.
+    Imu(Imu),
+    /// How frames of coordinates lie to each other.
+    Transforms(Vec<Transform>),
+}
+
+/// What an inertial sensor measures, in its own axes; none of what it does not.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Imu {
+    /// Specific force, m/s2: gravity's upwards where the sensor rests (REP 145).
+    pub(crate) acceleration: Option<[f64; 3]>,
+    /// Angular velocity, rad/s.
+    pub(crate) turn_rate: Option<[f64; 3]>,
+}
+
+/// How one frame of coordinates lies in another.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Transform {
+    pub(crate) parent: String,
+    pub(crate) child: String,
+    /// The child's pose: child to parent.
+    pub(crate) pose: CameraPose,
 }
 
 /// `sensor_msgs/msg/CameraInfo`, and what other messages of cameras have of it.

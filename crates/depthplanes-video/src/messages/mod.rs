@@ -1,4 +1,4 @@
-//! Messages that have a depth map or a camera in them. A new type is a row of [`TYPES`].
+//! Messages that have a depth map, a camera, or what tells of gravity in them. A new type is a row of [`TYPES`].
 
 mod cdr;
 mod content;
@@ -9,8 +9,21 @@ mod ros;
 mod wire;
 
 pub use content::CameraInfo;
-pub(crate) use content::{Content, Message};
+pub(crate) use content::{Content, Imu, Message, Transform};
 pub(crate) use picture::{depth_form, frame};
+
+/// What messages of a type have in them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// A map, or a picture.
+    Picture,
+    /// A camera.
+    Camera,
+    /// Readings of an inertial sensor.
+    Imu,
+    /// How frames of coordinates lie to each other.
+    Transforms,
+}
 
 /// A type of messages that is read.
 pub(crate) struct MessageType {
@@ -18,39 +31,33 @@ pub(crate) struct MessageType {
     pub(crate) schema: &'static str,
     /// How its messages are encoded.
     pub(crate) encoding: &'static str,
-    /// Whether it has a camera rather than a picture.
-    pub(crate) is_camera: bool,
+    pub(crate) kind: Kind,
     /// Takes a message apart; what is wrong with it.
     pub(crate) read: fn(&[u8]) -> Result<Message<'_>, String>,
 }
 
-const fn picture(
+const fn row(
     schema: &'static str,
     encoding: &'static str,
+    kind: Kind,
     read: fn(&[u8]) -> Result<Message<'_>, String>,
 ) -> MessageType {
-    MessageType { schema, encoding, is_camera: false, read }
-}
-
-const fn camera(
-    schema: &'static str,
-    encoding: &'static str,
-    read: fn(&[u8]) -> Result<Message<'_>, String>,
-) -> MessageType {
-    MessageType { schema, encoding, is_camera: true, read }
+    MessageType { schema, encoding, kind, read }
 }
 
 /// All types.
 pub(crate) const TYPES: &[MessageType] = &[
-    picture("sensor_msgs/msg/Image", "cdr", ros::image),
-    picture("sensor_msgs/msg/CompressedImage", "cdr", ros::compressed_image),
-    camera("sensor_msgs/msg/CameraInfo", "cdr", ros::camera_info),
-    picture("foxglove.RawImage", "protobuf", foxglove::raw_image),
-    picture("foxglove.CompressedImage", "protobuf", foxglove::compressed_image),
-    camera("foxglove.CameraCalibration", "protobuf", foxglove::camera_calibration),
-    picture("foxglove.RawImage", "json", json::raw_image),
-    picture("foxglove.CompressedImage", "json", json::compressed_image),
-    camera("foxglove.CameraCalibration", "json", json::camera_calibration),
+    row("sensor_msgs/msg/Image", "cdr", Kind::Picture, ros::image),
+    row("sensor_msgs/msg/CompressedImage", "cdr", Kind::Picture, ros::compressed_image),
+    row("sensor_msgs/msg/CameraInfo", "cdr", Kind::Camera, ros::camera_info),
+    row("sensor_msgs/msg/Imu", "cdr", Kind::Imu, ros::imu),
+    row("tf2_msgs/msg/TFMessage", "cdr", Kind::Transforms, ros::transforms),
+    row("foxglove.RawImage", "protobuf", Kind::Picture, foxglove::raw_image),
+    row("foxglove.CompressedImage", "protobuf", Kind::Picture, foxglove::compressed_image),
+    row("foxglove.CameraCalibration", "protobuf", Kind::Camera, foxglove::camera_calibration),
+    row("foxglove.RawImage", "json", Kind::Picture, json::raw_image),
+    row("foxglove.CompressedImage", "json", Kind::Picture, json::compressed_image),
+    row("foxglove.CameraCalibration", "json", Kind::Camera, json::camera_calibration),
 ];
 
 /// The type of a channel's messages, if it is read.

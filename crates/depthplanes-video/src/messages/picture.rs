@@ -80,7 +80,9 @@ pub(crate) fn frame(content: &Content<'_>, name: &str, options: &ReadOptions) ->
             (options.decode.raw_size, options.decode.raw_type) = (None, None);
             Cow::Borrowed(&data[..])
         }
-        Content::Camera(_) => return Err(Error::source(name, "a camera", "a picture")),
+        Content::Camera(_) | Content::Imu(_) | Content::Transforms(_) => {
+            return Err(Error::source(name, "no picture", "a picture"));
+        }
     };
     Ok(decode(&bytes, name, &options)?)
 }

@@ -1,25 +1,30 @@
-//! MCAP: depth maps of a topic of ROS 2 or Foxglove, with the camera of the topic beside it.
+//! MCAP: depth maps of a topic of ROS 2 or Foxglove, with the camera of the topic beside it, and up by an inertial sensor.
 
 use super::topics::{self, Choice};
 use crate::error::{Error, Result};
 use crate::frame::VideoFrame;
+use crate::gravity::Gravity;
 use crate::mcap::{Message, Reader};
-use crate::messages::{Content, frame, type_of};
+use crate::messages::{self, Content, Kind, type_of};
 use crate::source::{Source, SourceInfo, SourceOptions};
-use crate::word::path_and_topic as split;
+use crate::word::{self, path_and_topic as split};
 use depthplanes_io::ReadOptions;
 use depthplanes_io::camera_file::{CameraFile, parse};
 use std::path::{Path, PathBuf};
 
 pub(super) const MCAP: SourceInfo = SourceInfo {
     name: "mcap",
-    about: "an MCAP file of ROS 2 or Foxglove; FILE.mcap:/topic if it has several depth topics",
+    about: "an MCAP file of ROS 2 or Foxglove; FILE.mcap:/topic if it has several depth topics, FILE.mcap:/topic:/imu if several \
+            inertial sensors",
     is: |word| split(word).0.is_file() && is_mcap(split(word).0),
     open: |word, options| {
         let (path, topic) = split(word);
         Ok(Box::new(Recording::open(vec![path.into()], topic, options)?))
     },
 };
+
+/// Frames before the one that is sought whose readings of the inertial sensor are taken: a third of a second.
+const LEAD: u64 = 10;
 
 /// By its name, also where the whole file is compressed, which is refused with what to do.
 pub(super) fn is_mcap(path: &Path) -> bool {
@@ -39,7 +44,11 @@ pub(super) struct Recording {
     choice: Choice,
     /// The camera as the latest message has it, and that message's content.
     camera: Option<(String, std::result::Result<CameraFile, String>)>,
+    /// What says where gravity is, if there is something; or why it does not.
+    gravity: std::result::Result<Option<Gravity>, String>,
     next: u64,
+    /// Frames that are passed over, for what stands between them.
+    passed: u64,
     options: ReadOptions,
     is_over: bool,
 }
@@ -52,7 +61,8 @@ impl Recording {
     pub(super) fn open(files: Vec<PathBuf>, topic: Option<&str>, options: &SourceOptions) -> Result<Self> {
         let mut reader = Reader::open(&files[0], options.read.decode.limits.max_bytes)?;
         let mut looked = topics::look(&mut reader);
-        let choice = looked.choose(topic, &files[0])?;
+        let choice = looked.choose(&word::topics(topic), &files[0])?;
+        let gravity = looked.gravity(&choice, &mut reader);
         let most = options.read.decode.limits.max_bytes;
         // What is wrong with a further file is said when it is its turn.
         let further = files[1..].iter().map(|file| Reader::open(file, most).ok()?.count(&choice.topic));
@@ -65,7 +75,9 @@ impl Recording {
             reader,
             choice,
             camera: None,
+            gravity,
             next: 0,
+            passed: 0,
             options: options.read.clone(),
             is_over: false,
         };
@@ -91,43 +103,69 @@ impl Recording {
         }
     }
 
-    /// The frame of a message; none if it has a camera, which is kept.
+    /// The frame of a message; none if it has something else, which is kept.
     fn take(&mut self, message: &Message) -> Option<Result<VideoFrame>> {
         let channel = self.reader.channel(message.channel)?;
         let row = type_of(&channel.schema, &channel.encoding)?;
-        let read = (row.read)(message.data());
-        if row.is_camera {
-            match read.map(|read| read.content) {
-                Ok(Content::Camera(text)) => self.take_camera(text),
-                Ok(_) => (),
-                Err(wrong) => self.camera = Some((String::new(), Err(wrong))),
-            }
+        let is_passed = row.kind == Kind::Picture && self.passed > 0;
+        if is_passed {
+            self.passed -= 1;
             return None;
         }
-        let (index, name) = (self.next, format!("{}#{}", channel.topic, self.next));
-        self.next += 1;
-        self.of_file += 1;
-        let read = match read {
-            Ok(read) => read,
-            Err(wrong) => return Some(Err(Error::source(name, wrong, format!("a whole {}", row.schema)))),
-        };
-        let time_s = read.stamp_s.unwrap_or(message.log_time as f64 * 1e-9);
-        let frame = self.frame(&read.content, &name);
-        Some(frame.map(|frame| VideoFrame { index, name, time_s: Some(time_s), pose: None, up: None, frame }))
+        let log_time_s = message.log_time as f64 * 1e-9;
+        let read = (row.read)(message.data());
+        match (row.kind, read) {
+            (Kind::Picture, read) => {
+                let (index, name) = (self.next, format!("{}#{}", channel.topic, self.next));
+                self.next += 1;
+                self.of_file += 1;
+                let wrong = |wrong| Error::source(&name, wrong, format!("a whole {}", row.schema));
+                Some(read.map_err(wrong).and_then(|read| self.frame(&read, index, &name, log_time_s)))
+            }
+            (Kind::Camera, Ok(messages::Message { content: Content::Camera(text), .. })) => {
+                self.take_camera(text);
+                None
+            }
+            (Kind::Camera, Err(wrong)) => {
+                self.camera = Some((String::new(), Err(wrong)));
+                None
+            }
+            (Kind::Imu, Ok(messages::Message { content: Content::Imu(reading), .. })) => {
+                // By the clock of the recorder, which frames have as well.
+                self.gravity.iter_mut().flatten().for_each(|gravity| gravity.add(log_time_s, &reading));
+                None
+            }
+            _ => None,
+        }
     }
 
-    fn frame(&self, content: &Content<'_>, name: &str) -> Result<depthplanes_io::Frame> {
+    fn frame(&self, read: &messages::Message<'_>, index: u64, name: &str, log_time_s: f64) -> Result<VideoFrame> {
+        let mut frame = self.map(&read.content, name)?;
+        let (up, note) = match &self.gravity {
+            Ok(gravity) => {
+                let up = gravity.as_ref().and_then(|gravity| gravity.up(log_time_s));
+                (up, gravity.as_ref().and_then(Gravity::note))
+            }
+            Err(wrong) => (None, Some(wrong.clone())),
+        };
+        frame.warnings.extend(note);
+        let time_s = Some(read.stamp_s.unwrap_or(log_time_s));
+        Ok(VideoFrame { index, name: name.into(), time_s, pose: None, up, frame })
+    }
+
+    fn map(&self, content: &Content<'_>, name: &str) -> Result<depthplanes_io::Frame> {
+        let read = |options: &ReadOptions| messages::frame(content, name, options);
         if self.options.intrinsics.is_some() || self.options.camera_file.is_some() {
-            return frame(content, name, &self.options);
+            return read(&self.options);
         }
         match &self.camera {
-            Some((_, Ok(camera))) => frame(content, name, &self.options.clone().camera(camera)),
+            Some((_, Ok(camera))) => read(&self.options.clone().camera(camera)),
             Some((_, Err(wrong))) => {
-                let mut frame = frame(content, name, &self.options)?;
+                let mut frame = read(&self.options)?;
                 frame.warnings.push(format!("the camera of the recording is not used: {wrong}"));
                 Ok(frame)
             }
-            None => frame(content, name, &self.options),
+            None => read(&self.options),
         }
     }
 
@@ -179,10 +217,17 @@ impl Source for Recording {
             file += 1;
         }
         let is_there = file == self.at || self.go_to(file).is_ok();
-        if !is_there || !self.reader.seek(&self.choice.topic, of_file).unwrap_or(false) {
+        // What is up is known by readings before the frame.
+        let lead = if let Ok(Some(gravity)) = &mut self.gravity {
+            gravity.forget();
+            LEAD.min(of_file)
+        } else {
+            0
+        };
+        if !is_there || !self.reader.seek(&self.choice.topic, of_file - lead).unwrap_or(false) {
             return false;
         }
-        (self.next, self.of_file, self.is_over) = (index.min(frames), of_file, false);
+        (self.next, self.of_file, self.passed, self.is_over) = (index.min(frames), of_file, lead, false);
         true
     }
 }

@@ -8,7 +8,7 @@ use depthplanes_io::{Frame, Pixels, Provenance, ReadOptions};
 
 pub(super) const SCENE: SourceInfo = SourceInfo {
     name: "scene",
-    about: "scene:SPEC for a synthetic moving camera; beside a scene's keys frames=, speed= and pose=none",
+    about: "scene:SPEC for a synthetic moving camera; beside a scene's keys frames=, speed=, pose=none and up=known",
     is: |word| word.starts_with(PREFIX),
     open,
 };
@@ -16,6 +16,8 @@ pub(super) const SCENE: SourceInfo = SourceInfo {
 const PREFIX: &str = "scene:";
 /// Frames a second.
 const RATE: f64 = 30.0;
+/// Up in the world of scenes.
+const WORLD_UP: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// A synthetic camera as a source.
 #[derive(Debug)]
@@ -24,13 +26,16 @@ struct Moving {
     frames: u64,
     next: u64,
     tells_pose: bool,
+    /// Whether it says what is up, as a camera with an accelerometer does.
+    tells_up: bool,
     options: ReadOptions,
 }
 
 fn open(word: &str, options: &SourceOptions) -> Result<Box<dyn Source>> {
     let text = &word[PREFIX.len()..];
     let (name, keys) = text.split_once(':').unwrap_or((text, ""));
-    let (mut frames, mut speed, mut tells_pose, mut others) = (Walk::LOOP, 1.0, true, Vec::new());
+    let (mut frames, mut speed, mut others) = (Walk::LOOP, 1.0, Vec::new());
+    let (mut tells_pose, mut tells_up) = (true, false);
     for key in keys.split(',').filter(|key| !key.is_empty()) {
         let wrong = |accepted: &str| Error::source(word, format!("`{key}`"), accepted);
         match key.split_once('=') {
@@ -41,11 +46,14 @@ fn open(word: &str, options: &SourceOptions) -> Result<Box<dyn Source>> {
             }
             Some(("pose", "none")) => tells_pose = false,
             Some(("pose", _)) => return Err(wrong("pose=none, or nothing: the poses are known")),
+            Some(("up", "known")) => tells_up = true,
+            Some(("up", _)) => return Err(wrong("up=known, or nothing: up is estimated")),
             _ => others.push(key),
         }
     }
     let spec = format!("{name}:{}", others.join(",")).parse()?;
-    Ok(Box::new(Moving { walk: Walk::new(spec, speed), frames, next: 0, tells_pose, options: options.read.clone() }))
+    let (walk, options) = (Walk::new(spec, speed), options.read.clone());
+    Ok(Box::new(Moving { walk, frames, next: 0, tells_pose, tells_up, options }))
 }
 
 impl Moving {
@@ -70,9 +78,10 @@ impl Moving {
             provenance: Provenance { encoding: "a synthetic scene knows its own".into(), ..Provenance::default() },
             warnings: Vec::new(),
         };
-        let pose = self.tells_pose.then(|| self.walk.pose(index)).transpose()?;
-        let time_s = Some(index as f64 / RATE);
-        Ok(VideoFrame { index, name: format!("frame-{index:06}"), time_s, pose, up: None, frame })
+        let pose = self.walk.pose(index)?;
+        let up = self.tells_up.then(|| pose.to_camera(WORLD_UP));
+        let (pose, time_s) = (self.tells_pose.then_some(pose), Some(index as f64 / RATE));
+        Ok(VideoFrame { index, name: format!("frame-{index:06}"), time_s, pose, up, frame })
     }
 }
 

@@ -1,10 +1,11 @@
-//! Which topic of a recording is the depth map's, and which one has its camera.
+//! Which topic of a recording is the depth map's, which one has its camera, and which one says what is up.
 //!
 //! What a topic has in it is known from its first message alone: the beginning of the file is looked through for that.
 
 use crate::error::{Error, Result, short};
+use crate::gravity::{Frames, Gravity};
 use crate::mcap::Reader;
-use crate::messages::{Content, depth_form, type_of};
+use crate::messages::{Content, Kind, depth_form, type_of};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -12,6 +13,8 @@ use std::path::Path;
 const MOST_LOOKED: u64 = 1 << 26;
 /// Topics of our own, whose label images are no depth.
 const OURS: &str = "/depthplanes/";
+/// What the topic of transforms that never change is called, in whatever namespace.
+const STATIC: &str = "/tf_static";
 /// Topics in a message.
 const MOST_SAID: usize = 12;
 
@@ -20,11 +23,14 @@ const MOST_SAID: usize = 12;
 pub(super) struct Choice {
     pub(super) topic: String,
     camera: Option<String>,
+    /// The topic of the inertial sensor, or why there is none to choose.
+    imu: std::result::Result<Option<String>, String>,
 }
 
 impl Choice {
     pub(super) fn topics(&self) -> BTreeSet<String> {
-        [&self.topic].into_iter().chain(&self.camera).cloned().collect()
+        let imu = self.imu.iter().flatten();
+        [&self.topic].into_iter().chain(&self.camera).chain(imu).cloned().collect()
     }
 }
 
@@ -35,6 +41,10 @@ pub(super) struct Looked {
     pictures: BTreeMap<String, (Option<String>, String)>,
     /// Topics with cameras, with the frame of coordinates, and the camera.
     cameras: BTreeMap<String, (String, String)>,
+    /// Topics with inertial sensors; whether they have an accelerometer, and the frame of coordinates.
+    imus: BTreeMap<String, (bool, String)>,
+    /// Topics with transforms.
+    transforms: BTreeSet<String>,
     /// All topics, with the type of each.
     all: BTreeMap<String, String>,
     fault: Option<Error>,
@@ -58,12 +68,15 @@ pub(super) fn look(reader: &mut Reader) -> Looked {
         if looked.knows(&topic) {
             continue;
         }
-        match (row.read)(message.data()) {
-            Ok(read) => match read.content {
+        match ((row.read)(message.data()), row.kind) {
+            (_, Kind::Transforms) => _ = looked.transforms.insert(topic),
+            (Ok(read), _) => match read.content {
                 Content::Camera(text) => _ = looked.cameras.insert(topic, (read.frame_id, text)),
+                Content::Imu(imu) => _ = looked.imus.insert(topic, (imu.acceleration.is_some(), read.frame_id)),
                 content => _ = looked.pictures.insert(topic, (depth_form(&content), read.frame_id)),
             },
-            Err(_) => _ = looked.pictures.insert(topic, (None, String::new())),
+            (Err(_), Kind::Imu) => _ = looked.imus.insert(topic, (false, String::new())),
+            (Err(_), _) => _ = looked.pictures.insert(topic, (None, String::new())),
         }
     }
     let of_channel = |(_, channel): (u16, &crate::mcap::Channel)| {
@@ -75,7 +88,9 @@ pub(super) fn look(reader: &mut Reader) -> Looked {
 
 impl Looked {
     fn knows(&self, topic: &str) -> bool {
-        self.pictures.contains_key(topic) || self.cameras.contains_key(topic)
+        let of_one =
+            [self.pictures.contains_key(topic), self.cameras.contains_key(topic), self.imus.contains_key(topic)];
+        of_one.contains(&true) || self.transforms.contains(topic)
     }
 
     /// Whether there may be a topic of which nothing was seen yet.
@@ -87,18 +102,21 @@ impl Looked {
         !reader.has_summary() || reader.channels().any(may)
     }
 
-    /// The topic that is stated, or else the one with depth; and the one with its camera.
+    /// The topic that is stated, or else the one with depth; the one with its camera, and that of the inertial sensor which is
+    /// stated, or else of the only one.
     ///
     /// # Errors
     /// [`Error::Source`] with the topics there are, or what is wrong with the file.
-    pub(super) fn choose(&mut self, stated: Option<&str>, path: &Path) -> Result<Choice> {
+    pub(super) fn choose(&mut self, stated: &[&str], path: &Path) -> Result<Choice> {
         let depth: Vec<String> = self.depth().into_iter().map(|(topic, _)| topic.clone()).collect();
-        let wrong = match (stated, &depth[..]) {
-            (Some(topic), _) if self.pictures.contains_key(topic) => return Ok(self.with_camera(topic)),
-            (None, [topic]) => return Ok(self.with_camera(topic)),
-            (None, [_, _, ..]) => format!("{} topics have depth", depth.len()),
-            (Some(topic), _) => format!("no pictures in a topic {topic}"),
-            (None, []) => "no depth in it".to_string(),
+        let (imus, stated): (Vec<&str>, Vec<&str>) = stated.iter().partition(|topic| self.imus.contains_key(**topic));
+        let wrong = match (&stated[..], &depth[..]) {
+            ([topic], _) if self.pictures.contains_key(*topic) => return Ok(self.with(topic, &imus, path)),
+            ([], [topic]) => return Ok(self.with(topic, &imus, path)),
+            ([], [_, _, ..]) => format!("{} topics have depth", depth.len()),
+            ([topic], _) => format!("no pictures in a topic {topic}"),
+            ([], []) => "no depth in it".to_string(),
+            (several, _) => format!("{} topics are stated, {}", several.len(), several.join(" and ")),
         };
         // What is missing may stand behind what is wrong.
         match self.fault.take().filter(|_| depth.len() < 2) {
@@ -107,8 +125,56 @@ impl Looked {
         }
     }
 
-    fn with_camera(&self, topic: &str) -> Choice {
-        Choice { topic: topic.into(), camera: self.camera_beside(topic) }
+    fn with(&self, topic: &str, imus: &[&str], path: &Path) -> Choice {
+        Choice { topic: topic.into(), camera: self.camera_beside(topic), imu: self.imu(topic, imus, path) }
+    }
+
+    /// The topic of the inertial sensor: the one that is stated, or else the only one with an accelerometer.
+    fn imu(&self, topic: &str, stated: &[&str], path: &Path) -> std::result::Result<Option<String>, String> {
+        let measuring = self.imus.iter().filter(|(_, (measures, _))| *measures).map(|(topic, _)| topic.as_str());
+        let all: Vec<&str> = if stated.is_empty() { measuring.collect() } else { stated.to_vec() };
+        match all[..] {
+            [] => Ok(None),
+            [imu] if !self.imus[imu].0 => Err(format!("up is not taken from {imu}, which measures no acceleration")),
+            [imu] => Ok(Some(imu.into())),
+            _ => Err(format!(
+                "up is not taken from {}, of which one is to be stated: {}:{topic}:{}",
+                all.join(" nor "),
+                path.display(),
+                all[0]
+            )),
+        }
+    }
+
+    /// What says where gravity is beside the maps of a choice, if the recording does; or why it does not. Afterwards the reader
+    /// has to be rewound.
+    ///
+    /// # Errors
+    /// Why up is not known, and what to do.
+    pub(super) fn gravity(&self, choice: &Choice, reader: &mut Reader) -> std::result::Result<Option<Gravity>, String> {
+        let Some(imu) = choice.imu.as_ref().map_err(String::clone)? else { return Ok(None) };
+        let ((_, frame), (_, camera)) = (&self.imus[imu], &self.pictures[&choice.topic]);
+        Gravity::new(imu, frame, camera, &self.frames(reader)).map(Some)
+    }
+
+    /// All transforms that never change.
+    fn frames(&self, reader: &mut Reader) -> Frames {
+        let topics: BTreeSet<String> =
+            self.transforms.iter().filter(|topic| topic.ends_with(STATIC)).cloned().collect();
+        let mut frames = Frames::default();
+        if topics.is_empty() {
+            return frames;
+        }
+        let most = reader.bytes_read + MOST_LOOKED;
+        reader.rewind(topics);
+        while let Some(Ok(message)) = reader.next().filter(|_| reader.bytes_read <= most) {
+            let Some(channel) = reader.channel(message.channel) else { continue };
+            let Some(row) = type_of(&channel.schema, &channel.encoding) else { continue };
+            if let Ok(Content::Transforms(transforms)) = (row.read)(message.data()).map(|read| read.content) {
+                frames.add(transforms);
+            }
+        }
+        frames
     }
 
     /// The topics with depth and what it is in; 16 bits of grey are depth where there is nothing else.

@@ -23,6 +23,8 @@ pub(super) struct Watch {
     has_preset: bool,
     /// The flag that states up, if one does.
     up_by: Option<&'static str>,
+    /// Whether up was known in a frame.
+    is_up_known: bool,
     /// Frames in which a floor was looked for, and those in which there is one.
     floors: [u64; 2],
     said: BTreeSet<String>,
@@ -40,6 +42,7 @@ impl Watch {
 
     /// Counts whether there is a floor.
     pub(super) fn look_at_ground(&mut self, ground: &Ground) {
+        self.is_up_known |= ground.record["up_from"] != "estimated";
         self.floors[0] += 1;
         self.floors[1] += u64::from(!ground.record["floor"].is_null());
     }
@@ -77,8 +80,15 @@ impl Watch {
     /// Says how much was not said, and where what was stated finds nothing.
     pub(super) fn end(&self) {
         let [frames, floors] = self.floors;
-        if let Some(flag) = self.up_by.filter(|_| frames > 0 && floors == 0) {
-            note(&format!("no frame has a floor with the up that {flag} states; without it up is estimated"));
+        match self.up_by.filter(|_| frames > 0 && floors == 0) {
+            Some(flag) => {
+                note(&format!("no frame has a floor with the up that {flag} states; without it up is estimated"));
+            }
+            None if floors == 0 && self.is_up_known => note(
+                "no frame has a floor with the up that the source says; is the frame of coordinates of its maps an optical one (x \
+                 right, y down, z ahead)? --up X,Y,Z counts before it",
+            ),
+            None => (),
         }
         if self.jumps > MOST {
             note(&format!("time jumped {} more times", self.jumps - MOST));

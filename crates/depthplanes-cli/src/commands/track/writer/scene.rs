@@ -5,10 +5,11 @@
 use super::proto::Proto;
 use crate::commands::track::follow::Followed;
 use crate::failure::Outcome;
-use depthplanes::outline::{Outline, Outliner};
+use depthplanes::outline::Outliner;
 use depthplanes::track::CameraPose;
 use depthplanes::{DistortionModel, Sensor};
-use depthplanes_io::outputs::colour;
+use depthplanes_io::outputs::id_colour;
+use depthplanes_video::{DrawnPlane, POSE_AHEAD, drawn_planes};
 use std::collections::BTreeSet;
 
 /// The frame of coordinates of the map: x right, y down, z forward.
@@ -27,8 +28,7 @@ fn stamp(time_ns: u64) -> Proto {
 
 /// The colour of an id, as in pictures.
 fn colour_of(id: u32) -> Proto {
-    let label = (id.saturating_sub(1) % u32::from(u16::MAX)) as u16 + 1;
-    let [r, g, b] = colour(label).map(|part| f64::from(part) / 255.0);
+    let [r, g, b] = id_colour(id).map(|part| f64::from(part) / 255.0);
     Proto::of(&[r, g, b, 1.0])
 }
 
@@ -52,12 +52,9 @@ impl Scene {
     pub(super) fn update(&mut self, frame: &Followed, time_ns: u64) -> Outcome<Vec<u8>> {
         let outlines = self.outliner.outline_seen_by(&frame.detection, &frame.video.frame.sensor)?;
         let (mut update, mut shown) = (Proto::default(), BTreeSet::new());
-        for plane in &frame.detection.planes {
-            let Some(id) = frame.tracks.id_of(plane.label) else { continue };
-            let Some(outline) = outlines.get(plane.label).filter(Outline::is_metric) else { continue };
-            let at = plane.metric.map(|metric| metric.centroid_m);
-            update = update.message(2, entity(id, outline, at, time_ns));
-            shown.insert(id);
+        for plane in drawn_planes(&frame.detection, &frame.tracks, outlines) {
+            update = update.message(2, entity(&plane, time_ns));
+            shown.insert(plane.id);
         }
         for id in self.shown.difference(&shown) {
             let deletion = Proto::default().message(1, stamp(time_ns)).number(2, 0).text(3, &id.to_string());
@@ -69,17 +66,16 @@ impl Scene {
 }
 
 /// `foxglove.SceneEntity` of a plane.
-fn entity(id: u32, outline: Outline<'_>, centroid_m: Option<[f64; 3]>, time_ns: u64) -> Proto {
-    let name = id.to_string();
+fn entity(plane: &DrawnPlane<'_>, time_ns: u64) -> Proto {
+    let (id, name) = (plane.id, plane.id.to_string());
     let mut entity = Proto::default().message(1, stamp(time_ns)).text(2, CAMERA).text(3, &name).number(5, 1);
-    let rings = outline.polygons().flat_map(|polygon| std::iter::once(polygon.outer()).chain(polygon.holes()));
-    for points in rings.filter_map(|ring| ring.points_m()) {
+    for points in plane.rings_m() {
         // A line that is closed, as wide at any distance.
         let line = Proto::default().number(1, 1).message(2, pose_at([0.0; 3])).double(3, LINE_PX).number(4, 1);
         let line = points.fold(line, |line, point| line.message(5, Proto::of(&point)));
         entity = entity.message(11, line.message(6, colour_of(id)));
     }
-    match centroid_m {
+    match plane.centroid_m() {
         Some(at) => {
             let text = Proto::default().message(1, pose_at(at)).number(2, 1).double(3, TEXT_PX).number(4, 1);
             entity.message(13, text.message(5, colour_of(id)).text(6, &name))
@@ -131,9 +127,7 @@ fn lens(sensor: &Sensor) -> (&'static str, Vec<f64>) {
 
 /// `foxglove.FrameTransform` of the camera in the world.
 pub(super) fn transform(pose: Option<&CameraPose>, time_ns: u64) -> Vec<u8> {
-    // x right, y down and z ahead, turned to z up and x ahead.
-    let forward = ([-0.5, 0.5, -0.5, 0.5], [0.0; 3]);
-    let (rotation, translation) = pose.map_or(forward, |pose| (pose.quaternion(), pose.translation_m()));
+    let (rotation, translation) = pose.map_or(POSE_AHEAD, |pose| (pose.quaternion(), pose.translation_m()));
     let message = Proto::default().message(1, stamp(time_ns)).text(2, WORLD).text(3, CAMERA);
     message.message(4, Proto::of(&translation)).message(5, Proto::of(&rotation)).into_bytes()
 }
