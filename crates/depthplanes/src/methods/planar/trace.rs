@@ -314,9 +314,8 @@ impl Trace {
         let is_edge_on = region.is_edge_on(&rays);
         if is_edge_on {
             let finding = Finding::new("judge", "is it seen edge-on?", "dropped, it runs away from the camera");
-            let finding = finding
-                .with("angle to the ray", region.grazing_deg(&rays), "degrees")
-                .limit(Limit::AtLeast(GRAZING));
+            let finding =
+                finding.with("angle to the ray", region.grazing_deg(&rays), "degrees").limit(Limit::AtLeast(GRAZING));
             self.findings.push(finding.refusing(true));
         }
         self.fate = match (sign, is_redundant) {
