@@ -112,14 +112,7 @@ impl Recipe {
 
     /// Bytes that are used and reserved for a map.
     pub(crate) fn memory(&self, frame: &Frame) -> [u64; 2] {
-        // Bytes a pixel as measured on maps of 3 and 12 million pixels. The two reserve for the worst map and use little.
-        let (used, reserved) = match self.method.name {
-            "planar" => (24, 264),
-            "ngaf" => (16, 64),
-            _ => (144, 144),
-        };
-        let pixels = (frame.width * frame.height) as u64;
-        [used * pixels, reserved * pixels]
+        memory::of_detection(self.method, frame.width, frame.height)
     }
 
     fn outliner(&self) -> Outcome<Option<Outliner>> {
