@@ -1,6 +1,6 @@
 //! A map that was read from a file, made of a scene, or taken from a video.
 
-use crate::array::map_array;
+use crate::array::{lent, map_array};
 use crate::error::Result;
 use crate::reading::Reading;
 use depthplanes::ValueKind;
@@ -73,10 +73,11 @@ impl Frame {
         map_array(&frame.get().frame, frame.as_any())
     }
 
-    /// The labels of what is really there, row by row; `None` unless it is a scene.
-    #[getter]
-    fn truth(&self) -> Option<&[u16]> {
-        self.truth.as_deref()
+    /// The labels of what is really there, without a copy; `None` unless it is a scene.
+    fn truth<'py>(frame: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let of = frame.get();
+        let size = [of.frame.height, of.frame.width];
+        of.truth.as_ref().map(|truth| lent(frame.as_any(), truth, size)).transpose()
     }
 
     /// Columns and rows.

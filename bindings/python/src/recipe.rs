@@ -29,7 +29,7 @@ impl Recipe {
         let method = methods::find(method)?;
         let names: Vec<(String, f64)> = given.iter().map(|(name, &value)| (name.replace('_', "-"), value)).collect();
         let named: Vec<(&str, f64)> = names.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-        method.with(&named)?;
+        drop(method.with(&named)?); // they are checked
         let mut values = method.defaults();
         for (name, value) in named {
             values[method.position(name).expect("it was accepted")] = value;

@@ -106,17 +106,22 @@ class Detector:
         ReadingWarning
             With what is odd about the first map of each size and type; of each file and each frame.
         """
+        planes, is_first = self._find(depth)
+        return _warned(planes) if is_first else planes
+
+    def _find(self, depth: npt.ArrayLike | Frame | Path) -> tuple[Planes, bool]:
+        """The planes, and whether it is to be said what is odd about the map."""
         if isinstance(depth, (str, os.PathLike)):
-            return _warned(Planes(self._native.detect_file(os.fspath(depth))))
+            return Planes(self._native.detect_file(os.fspath(depth))), True
         if isinstance(depth, Frame):
             if not self._reading.is_empty():
                 raise InputError(
                     "the frame was read already, and knows its sensor, camera and unit; accepted: a Detector without these "
                     "for frames, or the array (frame.depth) or the path of the file for this one"
                 )
-            return _warned(Planes(self._native.detect_frame(depth._native)))
+            return Planes(self._native.detect_frame(depth._native)), True
         found, is_first = self._native.detect(as_array(depth))
-        return _warned(Planes(found)) if is_first else Planes(found)
+        return Planes(found), is_first
 
     def __repr__(self) -> str:
         method, parameters = self._native.parameters()
@@ -159,7 +164,8 @@ def detect(
     >>> depthplanes.detect(depth_mm, unit="mm", camera=(525, 525, 319.5, 239.5)).distances
     array([2., 3.])
     """
-    return Detector(sensor, camera, unit, method, **options)(depth)
+    planes, _ = Detector(sensor, camera, unit, method, **options)._find(depth)
+    return _warned(planes)
 
 
 def as_array(depth: Any) -> npt.NDArray[Any]:
@@ -174,6 +180,7 @@ def as_array(depth: Any) -> npt.NDArray[Any]:
 
 
 def _warned(planes: Planes) -> Planes:
+    """Warns whoever called the caller of what is odd."""
     for note in planes.notes:
         warnings.warn(note, ReadingWarning, stacklevel=3)
     return planes
