@@ -126,7 +126,7 @@ fn of_other(py: Python<'_>, array: &Bound<'_, PyUntypedArray>, options: &ReadOpt
 }
 
 /// Pixels that a fingerprint looks at.
-const LOOKED_AT: usize = 1024;
+const LOOKED_AT: usize = 256;
 
 /// A number that tells whether a map was written to: of evenly spaced pixels (FNV-1a).
 pub(crate) fn fingerprint(map: AnyView<'_>) -> u64 {

@@ -26,7 +26,7 @@ pub(crate) struct Detector {
 #[derive(Default)]
 struct Known {
     /// Of maps of each size and type, the last one last: what is settled, if anything is.
-    kinds: Vec<(Kind, Option<Settled>)>,
+    kinds: Vec<(Kind, Option<Arc<Settled>>)>,
     /// Bytes that there was memory for.
     memory: [u64; 2],
 }
@@ -73,7 +73,7 @@ impl Detector {
             && let Some(settled) = self.settled(Kind::of(&view))
         {
             let (lent, mark) = py.detach(|| {
-                let lent = self.pool.detect(settled.view(view)?, settled.sensor())?;
+                let lent = self.pool.detect(|| settled.view(view), settled.sensor())?;
                 Ok::<_, depthplanes::Error>((lent, fingerprint(view)))
             })?;
             let map = Map::Array { array: array.unbind(), mark, options: self.options.clone() };
@@ -103,7 +103,7 @@ impl Detector {
 
 impl Detector {
     /// What is known of maps of that kind.
-    fn settled(&self, kind: Kind) -> Option<Settled> {
+    fn settled(&self, kind: Kind) -> Option<Arc<Settled>> {
         self.known().kinds.iter().find(|(known, _)| *known == kind)?.1.clone()
     }
 
@@ -118,7 +118,7 @@ impl Detector {
             let is_first = !known.kinds.iter().any(|(known, _)| *known == kind);
             if is_first {
                 known.kinds.truncate(MOST_KINDS - 1);
-                known.kinds.insert(0, (kind, view.and_then(|_| Settled::of(&frame, &self.options))));
+                known.kinds.insert(0, (kind, view.and_then(|_| Settled::of(&frame, &self.options)).map(Arc::new)));
             }
             is_first
         };
@@ -133,7 +133,7 @@ impl Detector {
             let mut known = self.known();
             known.memory = known.memory.max(needed);
         }
-        Ok(self.pool.detect(frame.view()?, frame.sensor)?)
+        Ok(self.pool.detect(|| frame.view(), frame.sensor)?)
     }
 
     fn known(&self) -> MutexGuard<'_, Known> {

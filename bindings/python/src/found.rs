@@ -193,7 +193,7 @@ impl Found {
         (self.detection().width, self.detection().height)
     }
 
-    /// How long the detection took, seconds.
+    /// How long the reading and the detection took, seconds.
     #[getter]
     fn seconds(&self) -> f64 {
         self.lent.seconds

@@ -25,7 +25,7 @@ struct Idle {
 /// A detection that is on loan; its memory goes back when it is dropped.
 pub(crate) struct Lent {
     pub(crate) detection: Detection,
-    /// How long the detection took, seconds.
+    /// How long the reading and the detection took, seconds.
     pub(crate) seconds: f64,
     pub(crate) pool: Arc<Pool>,
 }
@@ -35,14 +35,18 @@ impl Pool {
         Pool { recipe, idle: Mutex::default(), spares: Mutex::default() }
     }
 
-    /// Finds the planes of a map.
+    /// Finds the planes of a map, once its reading has said which of its pixels are valid.
     ///
     /// # Errors
-    /// Those of the detection.
-    pub(crate) fn detect(self: &Arc<Self>, map: AnyView<'_>, sensor: Sensor) -> depthplanes::Result<Lent> {
+    /// Those of the reading and of the detection.
+    pub(crate) fn detect<'m>(
+        self: &Arc<Self>,
+        map: impl FnOnce() -> depthplanes::Result<AnyView<'m>>,
+        sensor: Sensor,
+    ) -> depthplanes::Result<Lent> {
         let mut idle = self.take(sensor);
         let start = Instant::now();
-        idle.detector.detect(map)?;
+        idle.detector.detect(map()?)?;
         let seconds = start.elapsed().as_secs_f64();
         let spare = locked(&self.spares).pop().unwrap_or_default();
         let detection = idle.detector.exchange(spare);

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from ._errors import InputError, ReadingWarning
+from ._errors import InputError, InputTypeError, ReadingWarning
 from ._frame import Frame
 from ._options import Camera, DetectorOptions, Path, reading_of, split
 from ._planes import Planes
@@ -111,6 +111,9 @@ class Detector:
 
     def _find(self, depth: npt.ArrayLike | Frame | Path) -> tuple[Planes, bool]:
         """The planes, and whether it is to be said what is odd about the map."""
+        if type(depth) is np.ndarray:  # most calls; all else takes longer to tell apart
+            found, is_first = self._native.detect(depth)
+            return Planes(found), is_first
         if isinstance(depth, (str, os.PathLike)):
             return Planes(self._native.detect_file(os.fspath(depth))), True
         if isinstance(depth, Frame):
@@ -124,8 +127,8 @@ class Detector:
         return Planes(found), is_first
 
     def __repr__(self) -> str:
-        method, parameters = self._native.parameters()
-        return f"Detector(method={method!r}, {', '.join(f'{name}={value:g}' for name, value in parameters)})"
+        parameters = "".join(f", {name}={value:g}" for name, value in self.parameters.items())
+        return f"Detector(method={self._native.parameters()[0]!r}{parameters})"
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -176,7 +179,10 @@ def as_array(depth: Any) -> npt.NDArray[Any]:
         return depth
     if not hasattr(depth, "__array__") and hasattr(depth, "__dlpack__"):
         return np.from_dlpack(depth)
-    return np.asarray(depth)
+    array = np.asarray(depth)
+    if array.dtype == np.object_:
+        raise InputTypeError(f"the map is a {type(depth).__name__}; accepted: an array of shape (height, width)")
+    return array
 
 
 def _warned(planes: Planes) -> Planes:

@@ -7,6 +7,24 @@ from typing import Any, final
 import numpy as np
 import numpy.typing as npt
 
+__all__ = [
+    "Detector",
+    "Found",
+    "Frame",
+    "Ground",
+    "GroundFinder",
+    "Outlines",
+    "Reading",
+    "Tracker",
+    "Video",
+    "__version__",
+    "colours",
+    "main",
+    "noise",
+    "score",
+    "tables",
+]
+
 __version__: str
 
 def main(words: Sequence[str]) -> int: ...
@@ -161,7 +179,7 @@ class Ground:
 class Tracker:
     def __new__(cls, kept_frames: int = ...) -> Tracker: ...
     def track(
-        self, found: Found, pose: tuple[Sequence[Sequence[float]], Sequence[float]] | None
+        self, found: Found, pose: tuple[Any, ...] | None
     ) -> tuple[list[int], list[dict[str, Any]]]: ...
 
 @final

@@ -52,6 +52,38 @@ class FileOptions(ReadingOptions, total=False):
 class Parameters(TypedDict, total=False):
     """The parameters of all methods; `depthplanes.tables()["methods"]` says what they are."""
 
+    min_pixels: float
+    min_area: float
+    noise: float
+    noise_growth: float
+    smooth_noise: float
+    smooth_noise_growth: float
+    noise_scale: float
+    lateral_noise: float
+    inlier_threshold: float
+    theta: float
+    window: float
+    passes: float
+    max_rms: float
+    min_fill: float
+    margin: float
+    epsilon: float
+    angle: float
+    overlooked: float
+    reach: float
+    seed: float
+    eps: float
+    delta: float
+    spacing: float
+    radius: float
+    draws: float
+    distance: float
+    votes: float
+    misses: float
+    block: float
+    theta_gradient: float
+    continuity: float
+
 
 class DetectorOptions(ReadingOptions, Parameters, total=False):
     """Everything that `Detector` takes beside `sensor`, `camera`, `unit` and `method`."""

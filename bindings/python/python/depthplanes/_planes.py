@@ -73,7 +73,8 @@ class Plane:
     @property
     def normal(self) -> Floats:
         """Unit normal towards the camera, camera coordinates, (3,); NaN without unit and camera."""
-        return self._planes.normals[self._index]
+        row: Floats = self._planes.normals[self._index]
+        return row
 
     @property
     def distance(self) -> float:
@@ -93,17 +94,20 @@ class Plane:
     @property
     def centroid(self) -> Floats:
         """Mean of its points, metres in camera coordinates, (3,); NaN if it is not known."""
-        return self._planes.centroids[self._index]
+        row: Floats = self._planes.centroids[self._index]
+        return row
 
     @property
     def centroid_px(self) -> Floats:
         """Mean of its pixels (u, v), (2,)."""
-        return self._planes.centroids_px[self._index]
+        row: Floats = self._planes.centroids_px[self._index]
+        return row
 
     @property
     def covariance(self) -> Floats:
         """Covariance of (nx, ny, nz, distance), (4, 4); NaN if it is not known."""
-        return self._planes.covariances[self._index]
+        row: Floats = self._planes.covariances[self._index]
+        return row
 
     @property
     def pixel_count(self) -> int:
@@ -113,7 +117,8 @@ class Plane:
     @property
     def xyxy(self) -> npt.NDArray[np.int64]:
         """Its box of pixels, (4,), as in `Planes.xyxy`."""
-        return self._planes.xyxy[self._index]
+        box: npt.NDArray[np.int64] = self._planes.xyxy[self._index]
+        return box
 
     @property
     def mask(self) -> npt.NDArray[np.bool_]:
@@ -267,7 +272,7 @@ class Planes:
 
     @property
     def seconds(self) -> float:
-        """How long the detection took."""
+        """How long the library took: to say which pixels are valid, and to find the planes."""
         return self._found.seconds
 
     # One plane.

@@ -89,10 +89,8 @@ class Tracker:
         pose : Pose or (rotation, translation), optional
             Where the camera was, camera to world. Without it the motion is estimated from the planes.
         """
-        if pose is not None:
-            rotation, translation = np.asarray(pose[0], dtype=np.float64), np.asarray(pose[1], dtype=np.float64)
-            pose = (rotation.tolist(), translation.tolist())
-        ids, records = self._native.track(planes._found, pose)
+        place = None if pose is None else tuple(np.asarray(part, dtype=np.float64).tolist() for part in pose)
+        ids, records = self._native.track(planes._found, place)
         return Tracks(planes, ids, records)
 
 

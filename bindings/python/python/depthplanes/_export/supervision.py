@@ -18,7 +18,7 @@ def to_supervision(planes: Planes) -> supervision.Detections:
     """Boxes and masks; what is known of the planes in space is in `data`."""
     supervision = need("supervision", "supervision", "to_supervision()")
     labels = np.arange(1, len(planes) + 1)
-    return supervision.Detections(
+    detections: supervision.Detections = supervision.Detections(
         xyxy=planes.xyxy.astype(np.float32),
         mask=planes.labels[None] == labels[:, None, None],
         class_id=np.zeros(len(planes), dtype=int),
@@ -31,3 +31,4 @@ def to_supervision(planes: Planes) -> supervision.Detections:
             "rms": planes.rms,
         },
     )
+    return detections
