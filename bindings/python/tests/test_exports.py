@@ -19,6 +19,7 @@ def test_pandas(some):
     assert np.allclose(table[["normal_x", "normal_y", "normal_z"]], some.normals) and np.allclose(table.area_m2, some.areas)
 
 
+@pytest.mark.filterwarnings("ignore:__array__ implementation")  # of pycocotools
 def test_coco(some):
     coco_module = pytest.importorskip("pycocotools.coco")
     coco = coco_module.COCO()

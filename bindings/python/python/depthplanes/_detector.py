@@ -161,11 +161,9 @@ def detect(
 
     Examples
     --------
-    >>> import numpy as np
-    >>> depth_mm = np.full((480, 640), 2000, dtype=np.uint16)
-    >>> depth_mm[:, 320:] = 3000
-    >>> depthplanes.detect(depth_mm, unit="mm", camera=(525, 525, 319.5, 239.5)).distances
-    array([2., 3.])
+    >>> frame = depthplanes.scene("planes3:sensor=clean_mm")
+    >>> depthplanes.detect(frame.depth, unit="mm", camera=frame.camera).distances.round(2)
+    array([2.14, 1.4 , 2.17])
     """
     planes, _ = Detector(sensor, camera, unit, method, **options)._find(depth)
     return _warned(planes)

@@ -15,6 +15,6 @@ if TYPE_CHECKING:
 
 def to_dataframe(planes: Planes) -> pandas.DataFrame:
     """The program's table, with the label as its index."""
-    pandas = need("pandas", "pandas", "to_dataframe()")
-    table = pandas.read_csv(io.BytesIO(planes._encode("planes", "csv")))
+    package = need("pandas", "pandas", "to_dataframe()")
+    table: pandas.DataFrame = package.read_csv(io.BytesIO(planes._encode("planes", "csv")))
     return table.set_index("label")

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
 def to_open3d(planes: Planes) -> list[open3d.geometry.PointCloud]:
     """The points of each plane, in its colour."""
-    open3d = need("open3d", "open3d", "to_open3d()")
+    package = need("open3d", "open3d", "to_open3d()")
     colours = _native.colours(len(planes)) / 255
     clouds = []
     for k, normal in enumerate(planes.normals):
         points = planes.points(k)
-        cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points))
-        cloud.normals = open3d.utility.Vector3dVector(np.broadcast_to(normal, points.shape))
+        cloud = package.geometry.PointCloud(package.utility.Vector3dVector(points))
+        cloud.normals = package.utility.Vector3dVector(np.broadcast_to(normal, points.shape))
         cloud.paint_uniform_color(colours[k + 1])
         clouds.append(cloud)
     return clouds

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 def to_supervision(planes: Planes) -> supervision.Detections:
     """Boxes and masks; what is known of the planes in space is in `data`."""
-    supervision = need("supervision", "supervision", "to_supervision()")
+    package = need("supervision", "supervision", "to_supervision()")
     labels = np.arange(1, len(planes) + 1)
-    detections: supervision.Detections = supervision.Detections(
+    detections: supervision.Detections = package.Detections(
         xyxy=planes.xyxy.astype(np.float32),
         mask=planes.labels[None] == labels[:, None, None],
         class_id=np.zeros(len(planes), dtype=int),
