@@ -1,5 +1,5 @@
 # People and CI call these targets and nothing else. `make help` lists them.
-# Everything that is made goes into the checkout: target/, .venv/, .venv-peers/, out/, dist/, fuzz/.
+# Everything that is made goes into the checkout: target/, .venv*/, out/, dist/, fuzz/.
 
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
@@ -41,7 +41,7 @@ WASM := --manifest-path tests/wasm/Cargo.toml
 say = @printf '\n== %s\n' '$(1)'
 
 .NOTPARALLEL:
-.PHONY: help demo dist try-deb deny test lint fmt format clippy rust-tests rustdoc packages package targets browser oracles bench bench-planar bench-track ablate tables peers results golden stress fuzz clean
+.PHONY: help demo dist try-deb deny test lint fmt format clippy rust-tests rustdoc packages package targets browser oracles python wheel bench bench-planar bench-track ablate tables peers results golden stress fuzz clean
 
 help: ## List the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -61,7 +61,7 @@ deny: ## Check licences, sources and advisories of all dependencies
 
 # Two at a time, which does not show the figures that `make oracles` prints.
 test: ORACLE_FLAGS = --numprocesses 2
-test: lint rust-tests rustdoc packages targets browser oracles ## Run every check: formatting, lints, all tests, documentation, packages, other targets, the page in a browser, Python oracles
+test: lint rust-tests rustdoc packages targets browser oracles python ## Run every check: formatting, lints, all tests, documentation, packages, other targets, the page in a browser, Python oracles, the Python package
 	$(call say,all checks passed)
 
 lint: format clippy ## Check formatting and lints, change nothing
@@ -112,6 +112,13 @@ browser: ## Build the live page anew and compare it, and use it in headless Chro
 oracles: $(VENV)
 	$(call say,Python oracles)
 	$(PY) -m pytest tests/oracles $(ORACLE_FLAGS)
+
+python: ## Build the Python package, install it with NumPy alone, and run its tests
+	$(call say,the Python package)
+	@scripts/python '$(PYTHON)'
+
+wheel: ## Make the Python package for others into dist: wheels for Linux, and the sources
+	@scripts/wheel '$(PYTHON)'
 
 bench: $(VENV) ## Measure against cc3d and OpenCV; writes benchmarks/record/MACHINE/DATE.csv
 	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes --examples
@@ -170,7 +177,7 @@ fmt: ## Format the code
 	@if scripts/component rustfmt; then $(CARGO) fmt --all && $(CARGO) fmt $(WASM); else exit 1; fi
 
 clean: ## Remove everything that was made
-	rm -rf target .venv .venv-peers out dist fuzz/target tests/wasm/target tests/browser/node_modules crates/depthplanes-serve/page/node_modules
+	rm -rf target .venv .venv-peers .venv-python .venv-maturin out dist fuzz/target tests/wasm/target tests/browser/node_modules crates/depthplanes-serve/page/node_modules
 	find . -name __pycache__ -o -name .pytest_cache | xargs rm -rf
 
 # Anew when the packages change, or when an earlier attempt did not finish.

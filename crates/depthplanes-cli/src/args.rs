@@ -23,7 +23,6 @@ use flags::path_given;
 use std::ffi::OsString;
 use std::io::Write;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 pub(crate) use clap_complete::Shell;
 pub(crate) use flags::{Inputs, Reading};
@@ -133,8 +132,7 @@ pub(crate) struct Score {
 }
 
 /// Parses the command line; on wrong use, or where help is asked for, it prints that, and what is left is the exit code.
-pub(crate) fn parse() -> Result<Command, ExitCode> {
-    let words: Vec<OsString> = std::env::args_os().collect();
+pub(crate) fn parse(words: Vec<OsString>) -> Result<Command, u8> {
     match program().try_get_matches_from(&words) {
         Ok(matches) => Ok(command(&matches)),
         Err(error) => Err(told(error, &words)),
@@ -142,7 +140,7 @@ pub(crate) fn parse() -> Result<Command, ExitCode> {
 }
 
 /// Prints help, or what is wrong with the words; the exit code for it.
-fn told(error: clap::Error, words: &[OsString]) -> ExitCode {
+fn told(error: clap::Error, words: &[OsString]) -> u8 {
     // The message shows words, and these may be names of files: said of words that steer no terminal.
     let words: Vec<String> = words.iter().map(|word| plain(&word.to_string_lossy()).into_owned()).collect();
     let error = program().try_get_matches_from(&words).err().unwrap_or(error);
@@ -150,7 +148,7 @@ fn told(error: clap::Error, words: &[OsString]) -> ExitCode {
     let printed = error.print().and_then(|()| std::io::stdout().flush());
     match printed {
         // Wrong use is wrong use even where nobody can be told.
-        _ if error.use_stderr() => ExitCode::from(2),
+        _ if error.use_stderr() => 2,
         printed => exit_code(printed.map_err(Failure::from)),
     }
 }

@@ -4,7 +4,6 @@ use crate::terminal::plain;
 use depthplanes_io::outputs::OutputError;
 use std::fmt;
 use std::io::{self, Write};
-use std::process::ExitCode;
 
 /// Why a command did not do all that was asked.
 #[derive(Debug)]
@@ -73,13 +72,13 @@ pub(crate) fn say(line: &str) {
 }
 
 /// Reports a failure, and the exit code for it.
-pub(crate) fn exit_code(outcome: Outcome) -> ExitCode {
+pub(crate) fn exit_code(outcome: Outcome) -> u8 {
     match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) if failure.is_closed_pipe() => ExitCode::SUCCESS,
+        Ok(()) => 0,
+        Err(failure) if failure.is_closed_pipe() => 0,
         Err(failure) => {
             failure.report();
-            ExitCode::from(if failure.is_machine() { 1 } else { 2 })
+            if failure.is_machine() { 1 } else { 2 }
         }
     }
 }

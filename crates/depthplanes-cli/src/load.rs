@@ -6,11 +6,10 @@ use crate::inputs::Input;
 use crate::patience::patiently;
 use depthplanes::Intrinsics;
 use depthplanes::noise::NoiseTable;
-use depthplanes::scene::{ScenePixels, Spec};
+use depthplanes::scene::Spec;
 use depthplanes_io::camera_file::read_camera;
-use depthplanes_io::encoding::Stereo;
 use depthplanes_io::formats::{DecodeOptions, Limits};
-use depthplanes_io::{Frame, Pixels, Provenance, ReadOptions, memory, read_noise_table};
+use depthplanes_io::{Frame, ReadOptions, memory, read_noise_table};
 use std::path::Path;
 
 /// The flags as the reading library takes them; reads the camera file.
@@ -49,8 +48,7 @@ pub(crate) fn options(reading: &Reading) -> Outcome<ReadOptions> {
     if options.camera_size.is_some() && options.intrinsics.is_none() && options.camera_file.is_none() {
         return Err(Failure::request("--camera-size needs the camera that it is of: --intrinsics or --camera"));
     }
-    options.stereo = stereo(reading, &options)?;
-    Ok(options)
+    Ok(options.rig(reading.focal, reading.baseline, reading.doffs)?)
 }
 
 /// The table of the noise, if one is given.
@@ -74,26 +72,6 @@ fn refuse_numbers(path: &Path) -> Outcome {
     Ok(())
 }
 
-/// The rig: flags go before the camera file, and the camera's own focal length is the rig's unless
-/// another is given.
-fn stereo(reading: &Reading, options: &ReadOptions) -> Outcome<Option<Stereo>> {
-    let given = [reading.baseline, reading.focal, reading.doffs];
-    if given.iter().all(Option::is_none) {
-        return Ok(options.stereo);
-    }
-    let lacking = |what| Failure::request(format!("a stereo rig needs its {what} as well"));
-    let file = options.camera_file.as_ref();
-    let known = file.and_then(|camera| camera.stereo);
-    let baseline_m = reading.baseline.or(known.map(|rig| rig.baseline_m)).ok_or_else(|| lacking("--baseline"))?;
-    let focal = reading
-        .focal
-        .or(known.map(|rig| rig.focal_px))
-        .or(options.intrinsics.or(file.map(|camera| camera.intrinsics)).map(|camera| camera.fx.abs()));
-    let focal_px = focal.ok_or_else(|| lacking("--focal (or --intrinsics)"))?;
-    let doffs_px = reading.doffs.or(known.map(|rig| rig.doffs_px)).unwrap_or(0.0);
-    Ok(Some(Stereo { focal_px, baseline_m, doffs_px }))
-}
-
 /// Reads an input.
 ///
 /// # Errors
@@ -101,10 +79,7 @@ fn stereo(reading: &Reading, options: &ReadOptions) -> Outcome<Option<Stereo>> {
 pub(crate) fn frame(input: &Input, options: &ReadOptions) -> Outcome<Frame> {
     match input {
         Input::File { path, .. } => {
-            // Its bytes, the samples, the pixels and what is looked at in them.
-            let needed =
-                6 * std::fs::metadata(path).map_or(0, |about| about.len().min(options.decode.limits.max_bytes as u64));
-            memory::check(needed, needed)?;
+            memory::check_of_file(path, options.decode.limits.max_bytes as u64)?;
             patiently(path, || depthplanes_io::read(path, options)).map_err(refusal)
         }
         Input::Standard => depthplanes_io::read_stream(std::io::stdin().lock(), "-", options).map_err(refusal),
@@ -141,22 +116,5 @@ pub(crate) fn scene(spec: &str) -> Outcome<Frame> {
     let spec = spec.parse::<Spec>()?;
     let needed = 64 * (spec.width * spec.height) as u64;
     memory::check(needed, needed)?;
-    let scene = spec.frame()?;
-    let pixels = match scene.pixels {
-        ScenePixels::U8(pixels) => Pixels::U8(pixels),
-        ScenePixels::U16(pixels) => Pixels::U16(pixels),
-        ScenePixels::F32(pixels) => Pixels::F32(pixels),
-    };
-    Ok(Frame {
-        width: scene.width,
-        height: scene.height,
-        pixels,
-        missing: None,
-        valid_range: None,
-        sensor: scene.sensor,
-        format: "scene",
-        encoding: "scene",
-        provenance: Provenance { encoding: "a synthetic scene knows its own".into(), ..Provenance::default() },
-        warnings: Vec::new(),
-    })
+    Ok(spec.frame()?.into())
 }

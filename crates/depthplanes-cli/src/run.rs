@@ -112,8 +112,7 @@ impl Recipe {
 
     /// Bytes that are used and reserved for a map.
     pub(crate) fn memory(&self, frame: &Frame) -> [u64; 2] {
-        let pixels = (frame.width * frame.height) as u64;
-        self.method.bytes_per_pixel.map(|bytes| bytes * pixels)
+        memory::of_detection(self.method, frame.width, frame.height)
     }
 
     fn outliner(&self) -> Outcome<Option<Outliner>> {

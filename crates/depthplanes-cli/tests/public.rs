@@ -278,6 +278,7 @@ fn the_public_items_are_those_of_the_lists() {
         ("depthplanes-video", 20),
         ("depthplanes-serve", 20),
         ("depthplanes-ros2", 20),
+        ("depthplanes-cli", 0),
     ] {
         let folder: PathBuf = [env!("CARGO_MANIFEST_DIR"), "..", name].iter().collect();
         let mut lines = BTreeSet::new();

@@ -89,6 +89,7 @@ fn unsafe_code_stands_in_the_kernels_alone() {
     assert_eq!(files_with("crates/depthplanes-cli/src", &["unsafe "]), [""; 0]);
     assert_eq!(files_with("crates/depthplanes-ros2/src", &["unsafe "]), [""; 0]);
     assert_eq!(files_with("crates/depthplanes-rerun/src", &["unsafe "]), [""; 0]);
+    assert_eq!(files_with("bindings/python/src", &["unsafe "]), ["array.rs"]); // memory that NumPy and Rust share
 }
 
 #[test]
@@ -117,15 +118,16 @@ fn the_tests_that_the_architecture_names_exist() {
 #[test]
 fn nobody_but_tests_and_benchmarks_asks_for_stages_by_themselves() {
     for krate in [
-        "depthplanes",
-        "depthplanes-io",
-        "depthplanes-video",
-        "depthplanes-serve",
-        "depthplanes-cli",
-        "depthplanes-ros2",
-        "depthplanes-rerun",
+        "crates/depthplanes",
+        "crates/depthplanes-io",
+        "crates/depthplanes-video",
+        "crates/depthplanes-serve",
+        "crates/depthplanes-cli",
+        "crates/depthplanes-ros2",
+        "crates/depthplanes-rerun",
+        "bindings/python",
     ] {
-        let folder = &format!("crates/{krate}/src");
+        let folder = &format!("{krate}/src");
         assert_eq!(files_with(folder, &["::internals"]), [""; 0], "{folder}");
     }
 }

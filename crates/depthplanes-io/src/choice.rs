@@ -4,7 +4,7 @@
 //! not a Kinect's millimetres, 8 bits are no 1/256 pixels, and PCD files hold metres.
 //!
 //! Without a stated encoding [`likely`] decides by the sample type:
-//! PFM -> `middlebury` (or `millimetre` if the median is above the number of columns), float -> `metre` (or `millimetre`
+//! arrays of floats in memory -> `metre`, PFM -> `middlebury` (or `millimetre` if the median is above the number of columns), float -> `metre` (or `millimetre`
 //! if the median is above 100), 16-bit -> `millimetre`, 8-bit -> `grey`. It never guesses a bit packing; the traps of
 //! `crate::traps` say when the numbers look like one.
 
@@ -13,6 +13,9 @@ use crate::error::Result;
 use crate::formats::Image;
 use crate::frame::Pixels;
 use crate::presets::SensorPreset;
+
+/// The format of maps that are in memory.
+pub(crate) const IN_MEMORY: &str = "array";
 
 /// An encoding, and why it is this one.
 pub(crate) struct Choice {
@@ -78,6 +81,16 @@ pub(crate) fn choose(
     Ok(Choice { encoding, why, note: Some(note) })
 }
 
+/// Whether the choice for a map in memory rests on its values, and not on its type and what is stated alone.
+pub(crate) fn rests_on_values(pixels: &Pixels, is_stated: bool, disparity: bool, has_preset: bool) -> bool {
+    !is_stated
+        && match pixels {
+            Pixels::U8(_) => false,
+            Pixels::U16(_) => disparity && !has_preset,
+            Pixels::F32(_) => has_preset,
+        }
+}
+
 /// Whether a map can be of a preset's encoding at all.
 fn suits(encoding: &Encoding, image: &Image, format: &str) -> bool {
     match &image.pixels {
@@ -99,6 +112,7 @@ fn are_whole(values: &[f32]) -> bool {
 pub(crate) fn likely(pixels: &Pixels, width: usize, format: &str, disparity: bool) -> (&'static Encoding, String) {
     let (name, why) = match pixels {
         Pixels::F32(_) if format == "pcd" => ("metre", "PCD files hold metres".to_string()),
+        Pixels::F32(_) if format == IN_MEMORY && !disparity => ("metre", "arrays of floats hold metres".to_string()),
         Pixels::F32(values) if format == "pfm" && !disparity => match typical(values) {
             // A disparity is at most the width of the picture.
             Some(median) if f64::from(median) > width as f64 => {

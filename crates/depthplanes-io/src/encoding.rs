@@ -49,6 +49,8 @@ pub struct Encoding {
     pub disparity: bool,
     /// Whether a value is spread over the channels of a picture.
     pub channels: bool,
+    /// Whether the numbers of the map are others than those of the file, or may be: bits are packed, bytes swapped.
+    pub unpacks: bool,
     /// Unpacks the image and explains it.
     pub apply: fn(&mut Image, &Given) -> Result<Meaning>,
 }
@@ -62,6 +64,7 @@ const DEPTH: Encoding = Encoding {
     missing: None,
     disparity: false,
     channels: false,
+    unpacks: false,
     apply: |image, given| depth(image, given.scale.unwrap_or(1000.0)),
 };
 
@@ -74,11 +77,12 @@ const DISPARITY: Encoding = Encoding {
     missing: None,
     disparity: true,
     channels: false,
+    unpacks: false,
     apply: |image, given| disparity(image, given, given.scale.unwrap_or(1.0)),
 };
 
 /// Bytes of millimetres in several channels.
-const SPREAD: Encoding = Encoding { channels: true, ..DEPTH };
+const SPREAD: Encoding = Encoding { channels: true, unpacks: true, ..DEPTH };
 
 /// All encodings.
 pub const ENCODINGS: &[Encoding] = &[
@@ -116,6 +120,7 @@ pub const ENCODINGS: &[Encoding] = &[
         about: "Kinect SDK 1: millimetres above three bits of player index",
         unit: "mm",
         scale: "",
+        unpacks: true,
         apply: |image, given| unpacked("kinect-sdk", image, given, |value| value >> 3),
         ..DEPTH
     },
@@ -125,6 +130,7 @@ pub const ENCODINGS: &[Encoding] = &[
         about: "SUN RGB-D: millimetres, bits rotated left by three",
         unit: "mm",
         scale: "",
+        unpacks: true,
         apply: |image, given| unpacked("sun-rgbd", image, given, |value| value.rotate_right(3)),
         ..DEPTH
     },
@@ -135,6 +141,7 @@ pub const ENCODINGS: &[Encoding] = &[
         unit: "raw disparity",
         scale: "",
         missing: Some(2047.0),
+        unpacks: true,
         apply: kinect_raw,
         ..DEPTH
     },

@@ -1,6 +1,7 @@
 //! One map read from a file, owned, with what is known of its numbers.
 
-use depthplanes::{AnyView, DepthView, Sensor};
+use depthplanes::scene::{SceneFrame, ScenePixels};
+use depthplanes::{AnyView, DepthView, Pixel, Sensor, with_view};
 
 use crate::stereo::Stereo;
 
@@ -24,6 +25,15 @@ impl Pixels {
             Pixels::U16(values) => values.len(),
             Pixels::F32(values) => values.len(),
         }
+    }
+
+    /// A view of them as a map of that size.
+    pub(crate) fn view(&self, width: usize, height: usize) -> depthplanes::Result<AnyView<'_>> {
+        Ok(match self {
+            Pixels::U8(pixels) => DepthView::new(pixels, width, height)?.into(),
+            Pixels::U16(pixels) => DepthView::new(pixels, width, height)?.into(),
+            Pixels::F32(pixels) => DepthView::new(pixels, width, height)?.into(),
+        })
     }
 }
 
@@ -90,27 +100,57 @@ pub enum Source {
     Preset,
 }
 
+impl From<SceneFrame> for Frame {
+    /// A synthetic frame, which knows its own unit and camera.
+    fn from(scene: SceneFrame) -> Self {
+        let pixels = match scene.pixels {
+            ScenePixels::U8(pixels) => Pixels::U8(pixels),
+            ScenePixels::U16(pixels) => Pixels::U16(pixels),
+            ScenePixels::F32(pixels) => Pixels::F32(pixels),
+        };
+        Frame {
+            width: scene.width,
+            height: scene.height,
+            pixels,
+            missing: None,
+            valid_range: None,
+            sensor: scene.sensor,
+            format: "scene",
+            encoding: "scene",
+            provenance: Provenance { encoding: "a synthetic scene knows its own".into(), ..Provenance::default() },
+            warnings: Vec::new(),
+        }
+    }
+}
+
 impl Frame {
     /// The library's view of the frame.
     ///
     /// # Errors
     /// [`depthplanes::Error`] for a size or a valid range that the library does not accept.
     pub fn view(&self) -> depthplanes::Result<AnyView<'_>> {
-        match &self.pixels {
-            Pixels::U8(pixels) => self.typed(pixels),
-            Pixels::U16(pixels) => self.typed(pixels),
-            Pixels::F32(pixels) => self.typed(pixels),
-        }
+        with_validity(self.pixels.view(self.width, self.height)?, self.missing, self.valid_range)
     }
+}
 
-    fn typed<'a, T: depthplanes::Pixel>(&self, pixels: &'a [T]) -> depthplanes::Result<AnyView<'a>> {
-        let mut view = DepthView::new(pixels, self.width, self.height)?;
-        if let Some(missing) = self.missing {
+/// A map with the rule for which of its pixels are valid.
+pub(crate) fn with_validity<'m>(
+    map: AnyView<'m>,
+    missing: Option<f64>,
+    valid_range: Option<(f64, f64)>,
+) -> depthplanes::Result<AnyView<'m>> {
+    fn typed<'m, T: Pixel>(
+        mut view: DepthView<'m, T>,
+        missing: Option<f64>,
+        valid_range: Option<(f64, f64)>,
+    ) -> depthplanes::Result<AnyView<'m>> {
+        if let Some(missing) = missing {
             view = view.missing_value(T::from_f64(missing));
         }
-        if let Some((low, high)) = self.valid_range {
+        if let Some((low, high)) = valid_range {
             view = view.valid_range(T::from_f64(low), T::from_f64(high))?;
         }
         Ok(view.into())
     }
+    with_view!(map, view => typed(view, missing, valid_range))
 }

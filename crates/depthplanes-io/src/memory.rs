@@ -1,6 +1,9 @@
 //! Whether memory can be had, asked before it is used: the map is refused then, and the program goes on.
 
 use std::fs;
+use std::path::Path;
+
+use depthplanes::methods::MethodInfo;
 
 use crate::error::{Error, Result};
 
@@ -39,6 +42,21 @@ pub fn check(used: u64, reserved: u64) -> Result<()> {
         left -= left.min(PIECE);
     }
     Ok(())
+}
+
+/// As [`check`], for reading a file of which no more than `most` bytes are read: its bytes, the samples, the pixels and what
+/// is looked at in them. Of a file that is not there nothing is said.
+///
+/// # Errors
+/// [`Error::Memory`].
+pub fn check_of_file(path: &Path, most: u64) -> Result<()> {
+    let needed = 6 * fs::metadata(path).map_or(0, |about| about.len().min(most));
+    check(needed, needed)
+}
+
+/// Bytes that a detector of a method uses and reserves for a map of that size, for [`check`].
+pub fn of_detection(method: &MethodInfo, width: usize, height: usize) -> [u64; 2] {
+    method.bytes_per_pixel.map(|bytes| bytes * (width * height) as u64)
 }
 
 /// Free bytes of the machine, or of the container if it has fewer; none where that cannot be known.

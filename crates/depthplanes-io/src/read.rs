@@ -72,6 +72,38 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
+    /// That there are a preset and an encoding of the names stated, before there is a map.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] with the names there are.
+    pub fn check(&self) -> Result<()> {
+        self.preset.as_deref().map(presets::by_name).transpose()?;
+        self.encoding.as_deref().map(encoding::by_name).transpose()?;
+        Ok(())
+    }
+
+    /// The same with a stereo rig of which some numbers are stated: focal length and difference of the principal points in
+    /// pixels, baseline in metres. The others are the camera file's; without them the focal length is the camera's own and the
+    /// difference 0. If none is stated nothing changes.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a rig without a baseline or a focal length.
+    pub fn rig(mut self, focal_px: Option<f64>, baseline_m: Option<f64>, doffs_px: Option<f64>) -> Result<Self> {
+        if [focal_px, baseline_m, doffs_px].iter().all(Option::is_none) {
+            return Ok(self);
+        }
+        let lacking = |option| Error::parameter(option, "not given", "a stereo rig needs it as well");
+        let file = self.camera_file.as_ref();
+        let known = file.and_then(|camera| camera.stereo);
+        let baseline_m = baseline_m.or(known.map(|rig| rig.baseline_m)).ok_or_else(|| lacking("--baseline"))?;
+        let camera = self.intrinsics.or(file.map(|camera| camera.intrinsics));
+        let focal_px = focal_px.or(known.map(|rig| rig.focal_px)).or(camera.map(|camera| camera.fx.abs()));
+        let focal_px = focal_px.ok_or_else(|| lacking("--focal (or --intrinsics)"))?;
+        let doffs_px = doffs_px.or(known.map(|rig| rig.doffs_px)).unwrap_or(0.0);
+        self.stereo = Some(Stereo { focal_px, baseline_m, doffs_px });
+        Ok(self)
+    }
+
     /// The same with everything that a camera file states.
     pub fn camera(mut self, camera: &CameraFile) -> Self {
         (self.intrinsics, self.camera_file) = (None, Some(camera.clone()));
@@ -112,17 +144,22 @@ pub fn decode(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Frame> 
 }
 
 fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
-    let preset = options.preset.as_deref().map(presets::by_name).transpose()?;
     let by_user = options.encoding.as_deref().map(encoding::by_name).transpose()?;
     let channels = by_user.is_some_and(|encoding| encoding.channels);
-    let (mut image, format) = formats::decode(bytes, &DecodeOptions { channels, ..options.decode.clone() })?;
+    let (image, format) = formats::decode(bytes, &DecodeOptions { channels, ..options.decode.clone() })?;
+    frame_of(image, format.name, options)
+}
+
+/// The frame of an image: what its numbers mean, which camera saw it, what is missing, what is odd.
+pub(crate) fn frame_of(mut image: Image, format: &'static str, options: &ReadOptions) -> Result<Frame> {
+    let preset = options.preset.as_deref().map(presets::by_name).transpose()?;
+    let by_user = options.encoding.as_deref().map(encoding::by_name).transpose()?;
     if options.swap_bytes {
         swap_bytes(&mut image)?;
     }
     let of_disparity = options.camera_file.as_ref().is_some_and(|camera| camera.disparity);
     let disparity = options.disparity || options.stereo.is_some() || of_disparity;
-    let Choice { encoding, why, note } =
-        choose(&image, format.name, by_user, disparity, options.scale.is_some(), preset)?;
+    let Choice { encoding, why, note } = choose(&image, format, by_user, disparity, options.scale.is_some(), preset)?;
     image.warnings.extend(note);
     if options.disparity && !encoding.disparity {
         let accepted = "an encoding of disparity (disparity, kitti, middlebury), or leave --disparity out";
@@ -150,7 +187,7 @@ fn decode_unnamed(bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
             .distortion(camera.distortion)
             .noise(noise(options.noise, of_preset(|preset| preset.noise), &meaning)?)
             .smooth_noise(noise(options.smooth_noise, of_preset(|preset| preset.smooth_noise), &meaning)?),
-        format: format.name,
+        format,
         encoding: encoding.name,
         provenance: Provenance {
             encoding: why,
@@ -206,8 +243,8 @@ fn storable(pixels: &Pixels, value: f64) -> bool {
     value.fract() == 0.0 && (0.0..=most).contains(&value)
 }
 
-/// The value for "missing": the user's, which must be one that a pixel can have, or else the preset's, the file's or the
-/// encoding's, or else one that no sensor measures.
+/// The value for "missing": the one that is known, or else one that no sensor measures. The user's must be one that a pixel
+/// can have.
 fn missing(
     options: &ReadOptions,
     preset: Option<&SensorPreset>,
@@ -220,16 +257,29 @@ fn missing(
             format!("a value that a {} pixel can have; 0, NaN and infinities are missing anyway", image.sample);
         return Err(Error::parameter("--missing", value, accepted));
     }
-    let of_preset = preset.and_then(|preset| preset.missing);
-    let known = options.missing.or(of_preset).or(image.missing).or(encoding.missing);
-    if let Some(value) = known.filter(|value| storable(&image.pixels, *value)) {
-        return Ok(Some(value));
+    let known = known_missing(options, preset, encoding, image.missing, &image.pixels);
+    if known.is_some() || options.valid_range.is_some() {
+        return Ok(known);
     }
-    let odd = not_measured(&image.pixels, meaning.value_kind).filter(|_| options.valid_range.is_none());
+    let view = image.pixels.view(image.width, image.height);
+    let odd = view.ok().and_then(|view| not_measured(view, meaning.value_kind));
     Ok(odd.map(|(value, note)| {
         image.warnings.push(note);
         value
     }))
+}
+
+/// The value for "missing" that is known without a look at the map: the user's, or else the preset's, the file's or the
+/// encoding's.
+pub(crate) fn known_missing(
+    options: &ReadOptions,
+    preset: Option<&SensorPreset>,
+    encoding: &Encoding,
+    of_file: Option<f64>,
+    pixels: &Pixels,
+) -> Option<f64> {
+    let of_preset = preset.and_then(|preset| preset.missing);
+    options.missing.or(of_preset).or(of_file).or(encoding.missing).filter(|value| storable(pixels, *value))
 }
 
 /// What a person should know of a stereo rig that was stated.

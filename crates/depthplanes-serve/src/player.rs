@@ -227,6 +227,7 @@ impl Player {
     fn end(&mut self) {
         if self.reader.can_seek && self.has_shown {
             self.has_shown = false;
+            self.state.frames = self.state.frames.or(self.state.index.map(|last| last + 1));
             self.pipeline.forget();
             self.reader.ask(Some(0));
             return;

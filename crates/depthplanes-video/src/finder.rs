@@ -95,7 +95,7 @@ impl Finder {
         observer: &mut (dyn FnMut(&'static str) + Send),
     ) -> Result<Found<'_>> {
         let sensor = &video.frame.sensor;
-        self.check_memory(video.frame.width * video.frame.height)?;
+        self.check_memory(video.frame.width, video.frame.height)?;
         self.detector.set_sensor(*sensor);
         let view = video.frame.view()?;
         let detection = self.detector.detect_observed(view, observer)?;
@@ -112,11 +112,11 @@ impl Finder {
     }
 
     /// Whether there is memory for a map, asked once for each larger one.
-    fn check_memory(&mut self, pixels: usize) -> Result<()> {
-        if pixels > self.pixels {
-            let [used, reserved] = self.detector.method().bytes_per_pixel.map(|bytes| bytes * pixels as u64);
+    fn check_memory(&mut self, width: usize, height: usize) -> Result<()> {
+        if width * height > self.pixels {
+            let [used, reserved] = memory::of_detection(self.detector.method(), width, height);
             memory::check(used, reserved)?;
-            self.pixels = pixels;
+            self.pixels = width * height;
         }
         Ok(())
     }

@@ -242,13 +242,20 @@ fn frames_have_their_stamps_and_can_be_sought() {
     assert!(source.next_frame().is_none() && source.next_frame().is_none());
     assert!(source.seek(100) && source.next_frame().is_none());
     assert!(source.seek(2) && source.next_frame().is_some());
-    // Without a summary nobody knows how many there are, nor where.
+    // Without a summary nobody knows how many there are, nor where: it is read from its beginning.
     for (bytes, _) in &recordings()[1..] {
         let found = frames_of(&path, bytes).unwrap();
         assert_eq!(found.iter().map(|frame| seen(frame.as_ref().unwrap())).collect::<Vec<_>>(), expected);
     }
     let mut source = open(path.to_str().unwrap(), &SourceOptions::default()).unwrap();
-    assert_eq!((source.frames(), source.seek(1)), (None, false));
+    assert_eq!(source.frames(), None);
+    for index in [4, 1, 5] {
+        assert!(source.seek(index));
+        assert_eq!(seen(&source.next_frame().unwrap().unwrap()), expected[index as usize]);
+    }
+    assert!(source.next_frame().is_none());
+    assert!(source.seek(100) && source.next_frame().is_none());
+    assert!(source.seek(0) && source.next_frame().is_some());
 }
 
 #[test]
@@ -382,6 +389,13 @@ fn a_bag_without_metadata_is_its_files_in_natural_order() {
     assert_eq!(good, (0..9).collect::<Vec<u64>>());
     assert!(found[9].as_ref().unwrap_err().to_string().contains("walk_10.mcap"), "{:?}", found[9]);
     assert_eq!(found.len(), 10);
+    // One that is cut off is sought from the beginning of the first.
+    let mut source = open(folder.to_str().unwrap(), &SourceOptions::default()).unwrap();
+    for index in [8, 2, 7] {
+        assert!(source.seek(index));
+        let frame = source.next_frame().unwrap().unwrap();
+        assert_eq!((frame.index, first(&frame)), (index, 1000 + index as u16 % FRAMES));
+    }
     // Of whole files it is known beforehand how many frames there are, and where.
     std::fs::write(folder.join("walk_10.mcap"), &bytes).unwrap();
     let mut source = open(folder.to_str().unwrap(), &SourceOptions::default()).unwrap();

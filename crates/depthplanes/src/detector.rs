@@ -163,6 +163,24 @@ impl Detector {
         self.detect_observed(map, &mut |_| ())
     }
 
+    /// Gives the last detection away and takes one whose memory the next is written to: for callers that keep the detections
+    /// of several frames. What stands in `spare` does not matter. With detections that come back, later frames allocate
+    /// nothing here either.
+    ///
+    /// ```
+    /// use depthplanes::{DepthView, Detection, Detector};
+    /// let (near, far) = ([1000u16; 400], [3000u16; 400]);
+    /// let mut detector = Detector::default();
+    /// detector.detect(DepthView::new(&near, 20, 20)?)?;
+    /// let first = detector.exchange(Detection::default());
+    /// let second = detector.detect(DepthView::new(&far, 20, 20)?)?;
+    /// assert_eq!([first.planes[0].fit.unwrap().offset, second.planes[0].fit.unwrap().offset], [1000.0, 3000.0]);
+    /// # Ok::<(), depthplanes::Error>(())
+    /// ```
+    pub fn exchange(&mut self, spare: Detection) -> Detection {
+        std::mem::replace(&mut self.detection, spare)
+    }
+
     /// As [`Detector::detect`]; `observer` is told the name of each stage as it ends, for timing.
     ///
     /// # Errors

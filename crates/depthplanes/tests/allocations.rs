@@ -11,7 +11,8 @@ use depthplanes::outline::Outliner;
 use depthplanes::scene::{ScenePixels, Spec, Walk};
 use depthplanes::track::Tracker;
 use depthplanes::{
-    Coplanar, DepthView, Detector, Distortion, DistortionModel, Intrinsics, Ngaf, Pixel, Planar, Sensor, ValueKind,
+    Coplanar, DepthView, Detection, Detector, Distortion, DistortionModel, Intrinsics, Ngaf, Pixel, Planar, Sensor,
+    ValueKind,
 };
 use naive::Random;
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -170,6 +171,27 @@ fn later_frames_of_planar_allocate_nothing() {
                 }
             }
         }
+    }
+}
+
+/// As a caller that looks back at the frame before: it gives a detection back when it has the next but one.
+#[test]
+fn detections_that_come_back_allocate_nothing() {
+    let frames: Vec<_> = (1..6)
+        .map(|seed| format!("room:seed={seed},sensor=kinect,size=320x240").parse::<Spec>().unwrap().frame().unwrap())
+        .collect();
+    let (mut detector, mut alone) =
+        (Detector::default().sensor(frames[0].sensor), Detector::default().sensor(frames[0].sensor));
+    let mut kept = [Detection::default(), Detection::default()];
+    for number in 0..20 {
+        let frame = &frames[number % frames.len()];
+        let expected = alone.detect(frame.view()).unwrap().clone();
+        let (calls, bytes) = allocated(|| {
+            detector.detect(frame.view()).unwrap();
+            kept[number % 2] = detector.exchange(std::mem::take(&mut kept[number % 2]));
+        });
+        assert_eq!(kept[number % 2], expected, "frame {number}");
+        assert!(number < 3 || (calls, bytes) == (0, 0), "frame {number}: {calls} calls, {bytes} bytes");
     }
 }
 

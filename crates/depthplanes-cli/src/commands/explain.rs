@@ -14,7 +14,7 @@ use depthplanes::Explanation;
 use depthplanes::explanation::{Finding, Quantity, Suggestion};
 use depthplanes::noise::SensorNoise;
 use depthplanes_io::memory;
-use serde_json::{Map, Value, json};
+use depthplanes_io::outputs::explanation_record;
 use std::io::Write;
 
 pub(super) fn run(wanted: &Explain, out: &mut dyn Write) -> Outcome {
@@ -29,7 +29,11 @@ pub(super) fn run(wanted: &Explain, out: &mut dyn Write) -> Outcome {
     memory::check(used, reserved).map_err(|error| named(error.into()))?;
     let why = recipe.detector().sensor(frame.sensor).explain(frame.view()?, wanted.at);
     let why = why.map_err(Failure::from).map_err(named)?;
-    let text = if wanted.json { format!("{:#}\n", record(&name, &recipe, &why)) } else { readable(&name, &why) };
+    let text = if wanted.json {
+        format!("{:#}\n", explanation_record(&name, recipe.method, &recipe.values, &why))
+    } else {
+        readable(&name, &why)
+    };
     out.write_all(text.as_bytes())?;
     Ok(out.flush()?)
 }
@@ -39,51 +43,6 @@ fn only(mut inputs: Vec<Input>) -> Outcome<Input> {
         (Some(input), 0) => Ok(input),
         (_, others) => Err(Failure::request(format!("`explain` looks at one map; {} were given", others + 1))),
     }
-}
-
-fn record(name: &str, recipe: &Recipe, why: &Explanation) -> Value {
-    let parameters = recipe.method.params.iter().zip(&recipe.values);
-    let parameters: Map<String, Value> = parameters.map(|(param, value)| (param.name.into(), json!(value))).collect();
-    json!({
-        "schema": "depthplanes.explain/1",
-        "source": name,
-        "method": why.method,
-        "parameters": parameters,
-        "at": why.at,
-        "findings": why.findings.iter().map(finding_record).collect::<Vec<_>>(),
-        "verdict": {"kind": why.verdict.kind(), "text": why.verdict.to_string()},
-        "suggestions": why.suggestions.iter().map(suggestion_record).collect::<Vec<_>>(),
-    })
-}
-
-fn finding_record(finding: &Finding) -> Value {
-    json!({
-        "stage": finding.stage,
-        "subject": finding.subject,
-        "quantities": finding.quantities.iter().map(quantity_record).collect::<Vec<_>>(),
-        "outcome": finding.outcome,
-        "refuses": finding.refuses,
-    })
-}
-
-fn quantity_record(quantity: &Quantity) -> Value {
-    let mut record = json!({"name": quantity.name, "value": quantity.value, "unit": quantity.unit});
-    if let Some(limit) = quantity.limit {
-        let (kind, bound) = limit.words();
-        record["limit"] = json!({"kind": kind.replace(' ', "_"), "value": bound, "holds": limit.holds(quantity.value)});
-    }
-    record
-}
-
-fn suggestion_record(suggestion: &Suggestion) -> Value {
-    let parameters: Map<String, Value> =
-        suggestion.parameters.iter().map(|&(name, value)| (name.to_string(), json!(value))).collect();
-    json!({
-        "parameters": parameters,
-        "plane_pixels": suggestion.plane_pixels,
-        "planes_before": suggestion.planes_before,
-        "planes_after": suggestion.planes_after,
-    })
 }
 
 /// The findings with the stage in front, then the verdict and what to change.

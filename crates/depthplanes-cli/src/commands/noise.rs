@@ -12,11 +12,9 @@ use crate::{inputs, load};
 use depthplanes::ValueKind;
 use depthplanes::noise::{Estimate, Estimator, SensorNoise};
 use depthplanes_io::ReadOptions;
-use serde_json::{Value, json};
+use depthplanes_io::outputs::{NOISE_RANGES_M, noise_record};
+use serde_json::json;
 use std::io::Write;
-
-/// Ranges that the standard deviation is told at, metres.
-const RANGES_M: [f64; 4] = [1.0, 2.0, 3.0, 4.0];
 
 pub(super) fn run(wanted: &Inputs, reading: &Reading, as_json: bool, out: &mut dyn Write) -> Outcome {
     let inputs = inputs::expand(&wanted.words, wanted.recursive)?;
@@ -52,11 +50,11 @@ fn look(input: &Input, options: &ReadOptions, together: &mut Estimator) -> Outco
 
 fn record(found: &[(String, Estimate)], all: &Estimate) -> String {
     let frame = |(name, estimate): &(String, Estimate)| {
-        let mut record = estimate_record(estimate);
+        let mut record = noise_record(estimate);
         record["source"] = json!(name);
         record
     };
-    let mut together = estimate_record(all);
+    let mut together = noise_record(all);
     together["flags"] = json!(flags(all));
     let record = json!({
         "schema": "depthplanes.noise/1",
@@ -64,37 +62,6 @@ fn record(found: &[(String, Estimate)], all: &Estimate) -> String {
         "all": together,
     });
     format!("{record:#}\n")
-}
-
-fn estimate_record(estimate: &Estimate) -> Value {
-    let [model, smooth, wide] = [estimate.model(), estimate.smooth_model(), estimate.wide_model()];
-    let at = |z: f64| {
-        let [white, smooth, wide] = [&model, &smooth, &wide].map(|part| part.depth_sigma_m(z));
-        json!({"range_m": z, "sigma_m": white, "smooth_m": smooth, "wide_m": wide})
-    };
-    let mut record = json!({
-        "space": space(estimate.value_kind),
-        "blocks": estimate.blocks,
-        "range": estimate.range,
-        "step": estimate.step,
-        "lateral_noise_px": estimate.lateral_noise_px,
-        "depth": RANGES_M.map(at),
-    });
-    for (part, noise) in [("", estimate.noise), ("smooth_", estimate.smooth), ("wide_", estimate.wide)] {
-        match noise {
-            SensorNoise::Depth { base, growth } => {
-                record[format!("{part}base_m")] = json!(base);
-                record[format!("{part}growth_per_m")] = json!(growth);
-            }
-            SensorNoise::Value { sigma } => record[format!("{part}sigma")] = json!(sigma),
-            SensorNoise::Table(_) => (),
-        }
-    }
-    record
-}
-
-fn space(value_kind: ValueKind) -> &'static str {
-    if matches!(value_kind, ValueKind::Depth { .. }) { "inverse_depth" } else { "value" }
 }
 
 fn readable(found: &[(String, Estimate)], all: &Estimate) -> String {
@@ -132,7 +99,7 @@ fn readable(found: &[(String, Estimate)], all: &Estimate) -> String {
 fn cells(name: &str, estimate: &Estimate) -> Vec<String> {
     let (model, smooth) = (estimate.model(), estimate.wide_model());
     let mut cells = row([name, &estimate.blocks.to_string(), &range(estimate)]);
-    cells.extend(RANGES_M.map(|z| match (model.depth_sigma_m(z), smooth.depth_sigma_m(z)) {
+    cells.extend(NOISE_RANGES_M.map(|z| match (model.depth_sigma_m(z), smooth.depth_sigma_m(z)) {
         (Some(white), Some(smooth)) => format!("{:.1} and {:.1} mm", 1e3 * white, 1e3 * smooth),
         _ => "-".to_string(),
     }));

@@ -2,7 +2,6 @@
 
 use crate::args::Score;
 use crate::failure::{Failure, Outcome, note};
-use crate::measures::{MEASURES, Measure, Scores, decimal, families};
 use crate::pairs::{self, Pair, Truth};
 use crate::patience::patiently;
 use crate::table::{Align, aligned, row};
@@ -10,6 +9,7 @@ use crate::terminal::plain;
 use depthplanes::metrics::{Contingency, SegComp, Split, Tolerance};
 use depthplanes::scene::Spec;
 use depthplanes_io::formats::DecodeOptions;
+use depthplanes_io::measures::{MEASURES, Measure, Scores, decimal, families};
 use depthplanes_io::{LabelImage, read_labels};
 use serde_json::{Map, Value, json};
 use std::io::Write;

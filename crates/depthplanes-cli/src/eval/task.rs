@@ -6,11 +6,11 @@ use super::peers::Peer;
 use super::rows::{Found, Key, Made, Row, Store};
 use crate::checksum::fnv;
 use crate::failure::{Failure, Outcome};
-use crate::measures::{MEASURES, Scores, of_surfaces};
 use crate::run::{Recipe, Runner};
 use depthplanes::Detection;
 use depthplanes::metrics::{Contingency, Tolerance, evops, partial, plane_errors, segcomp};
 use depthplanes_io::Frame;
+use depthplanes_io::measures::{MEASURES, Scores, of_surfaces};
 use depthplanes_io::outputs::{Spread, grey16_png, write_file};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -139,7 +139,7 @@ fn score(truth: &TruthOf, detection: &Detection, made: &mut Found) -> Outcome {
         return Ok(());
     }
     let scores = Scores::of(&table, Tolerance::default());
-    let value = |measure: &crate::measures::Measure| {
+    let value = |measure: &depthplanes_io::measures::Measure| {
         Some((format!("{}.{}", measure.family, measure.name), measure.value(&scores)?))
     };
     made.scores = MEASURES.iter().filter_map(value).collect();

@@ -34,6 +34,7 @@ mod unsupported;
 
 pub use compressed_depth::{inverse_depth_value_kind, quantised_inverse_depth};
 pub use format::{DecodeOptions, Format, Image, Limits};
+pub(crate) use raw::image_of;
 pub use raw::{raw_bytes, raw_types};
 pub(crate) use spread::bytes as bytes_of_channels;
 pub use unsupported::left_out;

@@ -5,7 +5,7 @@
 //! `float32`, `uint32` (either byte order) and `int32` whose numbers can be a map. Out: values by the rules
 //! of `samples`.
 
-use super::format::{DecodeOptions, Format, Image};
+use super::format::{DecodeOptions, Format, Image, Limits};
 use super::samples::{Sample, half, pixels};
 use crate::error::{Error, Result};
 use crate::frame::Pixels;
@@ -42,6 +42,10 @@ const TYPES: &[Type] = &[
     ("uint32-be", Sample::U32, true),
     ("int32", Sample::I32, false),
     ("int32-be", Sample::I32, true),
+    ("uint64", Sample::U64, false),
+    ("uint64-be", Sample::U64, true),
+    ("int64", Sample::I64, false),
+    ("int64-be", Sample::I64, true),
     ("float16", Sample::F16, false),
     ("float16-be", Sample::F16, true),
     ("float32", Sample::F32, false),
@@ -104,25 +108,42 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
         return Err(Error::parameter("--raw-size", "not given", "WIDTHxHEIGHT of the headerless samples"));
     };
     let area = options.limits.area("raw", width as u64, height as u64, 1)?;
-    let mut warnings = Vec::new();
     let (name, sample, big_endian) = match &options.raw_type {
         Some(name) => stated(name)?,
         None => by_length(bytes, area).ok_or_else(|| misfit(bytes, (width, height), None))?,
     };
-    options.limits.area("raw", width as u64, height as u64, sample.bytes())?;
-    if bytes.len() != area * sample.bytes() {
-        return Err(misfit(bytes, (width, height), Some(sample)));
-    }
+    let mut image = samples_of(bytes, (name, sample, big_endian), (width, height), &options.limits)?;
     if options.raw_type.is_none() && sample != Sample::U16 {
         let each = sample.bytes();
         let other = if each == 1 { "" } else { "; another is stated with --raw-type" };
-        warnings.push(format!("{each} byte{} a pixel are read as {name}{other}", if each == 1 { "" } else { "s" }));
+        image
+            .warnings
+            .push(format!("{each} byte{} a pixel are read as {name}{other}", if each == 1 { "" } else { "s" }));
     }
     if options.raw_type.is_none() && sample == Sample::U16 {
-        warnings.extend(halves(bytes));
+        image.warnings.extend(halves(bytes));
     }
+    let swapped = swapped_size(&image.pixels, width, height);
+    image.warnings.extend(swapped);
+    Ok(image)
+}
+
+/// The image of samples in memory, row by row, of the type of that name ([`raw_types`]).
+///
+/// # Errors
+/// [`Error::Parameter`] for another type or other than that many samples, [`Error::Limit`] for too large a map.
+pub(crate) fn image_of(bytes: &[u8], name: &str, size: (usize, usize), limits: &Limits) -> Result<Image> {
+    samples_of(bytes, stated(name)?, size, limits)
+}
+
+fn samples_of(bytes: &[u8], (_, sample, big_endian): Type, size: (usize, usize), limits: &Limits) -> Result<Image> {
+    let (width, height) = size;
+    let area = limits.area("raw", width as u64, height as u64, sample.bytes())?;
+    if bytes.len() != area * sample.bytes() {
+        return Err(misfit(bytes, size, Some(sample)));
+    }
+    let mut warnings = Vec::new();
     let pixels = pixels(bytes, sample, big_endian, &mut warnings);
-    warnings.extend(swapped_size(&pixels, width, height));
     Ok(Image::new(width, height, pixels, sample.name(), warnings))
 }
 

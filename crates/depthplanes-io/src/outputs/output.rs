@@ -29,13 +29,18 @@ pub struct Output {
 }
 
 impl Output {
-    /// The writer for a path's extension; the usual one for `-` and for a stream without such a name, as `/dev/null`.
+    /// The writer for the end of a path's name, of several the one with the longest; the usual one for `-` and for a stream
+    /// without such a name, as `/dev/null`.
     ///
     /// # Errors
     /// [`OutputError::Extension`] with the extensions there are.
     pub fn writer(&self, path: &Path) -> Result<&'static Writer, OutputError> {
-        let given = path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let found = self.writers.iter().find(|writer| writer.extension == given);
+        let name = path.file_name().map(|name| name.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let ends = |writer: &&Writer| {
+            let stem = name.strip_suffix(writer.extension).and_then(|name| name.strip_suffix('.'));
+            stem.is_some_and(|stem| !stem.is_empty())
+        };
+        let found = self.writers.iter().filter(ends).max_by_key(|writer| writer.extension.len());
         let usual = || self.writers.first().filter(|_| path == Path::new("-") || is_stream(path));
         found.or_else(usual).ok_or_else(|| OutputError::Extension {
             output: self.name,

@@ -47,10 +47,30 @@ pub fn overlay_png<'m>(
     outlines: Option<&Outlines>,
 ) -> Result<Vec<u8>, OutputError> {
     let map = map.into();
-    if [map.width(), map.height()] != [found.width, found.height] {
-        return Err(OutputError::Size { map: [map.width(), map.height()], found: [found.width, found.height] });
-    }
+    check_size([map.width(), map.height()], found)?;
     Ok(tinted(map, sensor, found, outlines).png())
+}
+
+/// The pixels of that picture without outlines, sRGB, row by row; over another picture than the map in grey if one is given.
+///
+/// # Errors
+/// [`OutputError::Size`] unless map and picture are of the detection's size.
+pub fn overlay_pixels<'m>(
+    map: impl Into<AnyView<'m>>,
+    sensor: &Sensor,
+    found: &Detection,
+    picture: Option<(usize, Vec<[u8; 3]>)>,
+) -> Result<Vec<[u8; 3]>, OutputError> {
+    let map = map.into();
+    check_size([map.width(), map.height()], found)?;
+    let (width, pixels) = picture.unwrap_or_else(|| (found.width, shade::greys(map, sensor.value_kind)));
+    check_size([width, pixels.len().checked_div(width).unwrap_or(0)], found)?;
+    Ok(over(Picture { width, height: found.height, pixels }, found, None).pixels)
+}
+
+fn check_size(map: [usize; 2], found: &Detection) -> Result<(), OutputError> {
+    let found = [found.width, found.height];
+    if map == found { Ok(()) } else { Err(OutputError::Size { map, found }) }
 }
 
 /// The overlay of a frame of a video: each plane in the colour of its id, and the ids of the largest ones on them. `ids` has
@@ -68,9 +88,7 @@ pub fn tracked_png<'m>(
     ids: &[u32],
 ) -> Result<Vec<u8>, OutputError> {
     let map = map.into();
-    if [map.width(), map.height()] != [found.width, found.height] {
-        return Err(OutputError::Size { map: [map.width(), map.height()], found: [found.width, found.height] });
-    }
+    check_size([map.width(), map.height()], found)?;
     let pixels = shade::greys(map, sensor.value_kind);
     let mut picture = Picture { width: found.width, height: found.height, pixels };
     let palette: Vec<[u8; 3]> = [colour(0)].into_iter().chain(ids.iter().copied().map(id_colour)).collect();
@@ -92,7 +110,11 @@ fn picture(report: &Report<'_>) -> Result<Picture, OutputError> {
 /// The map in grey and over it what was found.
 fn tinted(map: AnyView<'_>, sensor: &Sensor, detection: &Detection, outlines: Option<&Outlines>) -> Picture {
     let pixels = shade::greys(map, sensor.value_kind);
-    let mut picture = Picture { width: detection.width, height: detection.height, pixels };
+    over(Picture { width: detection.width, height: detection.height, pixels }, detection, outlines)
+}
+
+/// A picture and over it what was found.
+fn over(mut picture: Picture, detection: &Detection, outlines: Option<&Outlines>) -> Picture {
     tint_planes(&mut picture, detection, &palette(detection.planes.len()), outlines.is_none());
     if let Some(curved) = &detection.curved {
         hatch_curved(&mut picture, &curved.labels);

@@ -1,20 +1,23 @@
-//! The planes as text: JSON with everything that is known of the frame, or CSV with one line a plane.
+//! The planes as text: JSON with everything that is known of the frame, CSV with one line a plane, and forms of others.
 
 use super::output::{Output, Report, Writer};
 use super::record::FrameRecord;
+use super::{coco, geojson};
 use depthplanes::Plane;
 use serde_json::Value;
 use std::fmt::Write;
 
 pub(super) const OUTPUT: Output = Output {
     name: "planes",
-    about: "planes with their equations, as JSON with the whole record or as CSV",
+    about: "planes with their equations, as JSON with the whole record, CSV, GeoJSON or COCO",
     file: "planes.json",
     needs_camera: false,
     needs_curved: false,
     writers: &[
         Writer { extension: "json", encode: |report| Ok(document(report).into_bytes()) },
         Writer { extension: "csv", encode: |report| Ok(csv(report).into_bytes()) },
+        Writer { extension: "geojson", encode: |report| Ok(geojson::document(report)?.into_bytes()) },
+        Writer { extension: "coco.json", encode: |report| Ok(coco::document(report).into_bytes()) },
     ],
 };
 

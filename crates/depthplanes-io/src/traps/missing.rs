@@ -1,9 +1,9 @@
 //! Values that stand for "nothing measured": named, and left out where they cannot be a measurement.
 
-use depthplanes::ValueKind;
+use depthplanes::{AnyView, DepthView, Pixel, ValueKind, with_view};
 
 use super::probe::{FEW, Probe, is_small, percent};
-use crate::frame::{Frame, Pixels};
+use crate::frame::Frame;
 
 /// From this many metres on no camera measures depth, whatever the unit: the largest value that a file of millimetres or
 /// metres can mean is less.
@@ -17,16 +17,16 @@ const SHARE: f64 = 0.005;
 
 /// The value of a map that no sensor measures but programs write for "nothing there", with a note, if the user said
 /// nothing of missing values.
-pub(crate) fn not_measured(pixels: &Pixels, value_kind: ValueKind) -> Option<(f64, String)> {
+pub(crate) fn not_measured(map: AnyView<'_>, value_kind: ValueKind) -> Option<(f64, String)> {
     let is_depth = matches!(value_kind, ValueKind::Depth { .. });
-    let (value, count, what) = match pixels {
-        Pixels::U16(values) if is_depth => (f64::from(u16::MAX), count(values, u16::MAX), "the largest of 16 bits"),
-        Pixels::U16(values) => (f64::from(MINUS_16), count(values, MINUS_16), "-16 of a stereo matcher in 16 bits"),
-        Pixels::F32(values) => largest_float(values, is_depth)?,
-        Pixels::U8(_) => return None,
+    let (value, count, what) = match &map {
+        AnyView::U16(map) if is_depth => (f64::from(u16::MAX), count(map, u16::MAX), "the largest of 16 bits"),
+        AnyView::U16(map) => (f64::from(MINUS_16), count(map, MINUS_16), "-16 of a stereo matcher in 16 bits"),
+        AnyView::F32(map) => largest_float(map, is_depth)?,
+        AnyView::U8(_) => return None,
     };
-    let share = count as f64 / pixels.len().max(1) as f64;
-    (share >= SHARE).then(|| {
+    is_many(count, map.width() * map.height()).then(|| {
+        let share = count as f64 / (map.width() * map.height()) as f64;
         let (share, shown) = (percent(share), shown(value));
         let note = format!(
             "{share} of the pixels are {shown}, {what}: taken as missing, as --missing {shown} says; state --valid-range \
@@ -36,20 +36,36 @@ pub(crate) fn not_measured(pixels: &Pixels, value_kind: ValueKind) -> Option<(f6
     })
 }
 
-fn count<T: PartialEq>(values: &[T], wanted: T) -> usize {
-    values.iter().filter(|&value| *value == wanted).count()
+/// Whether so many of the pixels are no accident.
+fn is_many(count: usize, pixels: usize) -> bool {
+    count as f64 >= SHARE * pixels as f64
+}
+
+fn count<T: Pixel>(map: &DepthView<'_, T>, wanted: T) -> usize {
+    count_where(map, |value| value == wanted)
+}
+
+/// How many pixels a condition holds for. Every frame is counted: sums of so many pixels fit 16 bits, and are vectorised.
+fn count_where<T: Pixel>(map: &DepthView<'_, T>, holds: impl Fn(T) -> bool) -> usize {
+    let of = |pixels: &[T]| pixels.iter().map(|&value| u16::from(holds(value))).sum::<u16>();
+    map.rows().flat_map(|row| row.chunks(1 << 15)).map(|pixels| usize::from(of(pixels))).sum()
 }
 
 /// The largest value of a map of floats, if it is none that was measured.
-fn largest_float(values: &[f32], is_depth: bool) -> Option<(f64, usize, &'static str)> {
-    let largest = values.iter().copied().filter(|value| value.is_finite()).fold(0.0, f32::max);
+fn largest_float(map: &DepthView<'_, f32>, is_depth: bool) -> Option<(f64, usize, &'static str)> {
+    // No value that is looked for is less; most maps have none of these.
+    let large = count_where(map, |value| (value >= LARGEST_HALF) & (value < f32::INFINITY));
+    if !is_many(large, map.area()) {
+        return None;
+    }
+    let largest = map.rows().flatten().copied().filter(|value| value.is_finite()).fold(0.0, f32::max);
     let what = match largest {
         NO_DEPTH.. => "more than any depth or disparity",
         LARGEST_HALF if is_depth => "the largest of 16-bit floats",
         65_535.0 if is_depth => "the largest of 16 bits",
         _ => return None,
     };
-    Some((f64::from(largest), count(values, largest), what))
+    Some((f64::from(largest), count(map, largest), what))
 }
 
 /// The shortest text that is read as the same value.
@@ -92,10 +108,7 @@ pub(super) fn mostly(frame: &Frame, probe: &Probe) -> Option<String> {
 /// Share of the pixels that have the value for "missing" that is known of the map.
 fn known_share(frame: &Frame) -> f64 {
     let Some(missing) = frame.missing else { return 0.0 };
-    let count = match &frame.pixels {
-        Pixels::U8(values) => count(values, missing as u8),
-        Pixels::U16(values) => count(values, missing as u16),
-        Pixels::F32(values) => count(values, missing as f32),
-    };
+    let Ok(map) = frame.view() else { return 0.0 };
+    let count = with_view!(map, map => count(&map, Pixel::from_f64(missing)));
     count as f64 / frame.pixels.len().max(1) as f64
 }

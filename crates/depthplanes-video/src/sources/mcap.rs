@@ -96,6 +96,16 @@ impl Recording {
         Ok(())
     }
 
+    /// Begins anew and passes over so many frames, where nobody says where they stand; whether the first file is still there.
+    fn pass_over(&mut self, frames: u64) -> bool {
+        let is_there = self.go_to(0).is_ok();
+        if is_there {
+            self.gravity.iter_mut().flatten().for_each(Gravity::forget);
+            (self.next, self.passed, self.is_over) = (frames, frames, false);
+        }
+        is_there
+    }
+
     fn take_camera(&mut self, text: String) {
         if self.camera.as_ref().is_none_or(|(known, _)| *known != text) {
             let camera = parse(&text).map_err(|error| error.to_string());
@@ -110,6 +120,7 @@ impl Recording {
         let is_passed = row.kind == Kind::Picture && self.passed > 0;
         if is_passed {
             self.passed -= 1;
+            self.of_file += 1;
             return None;
         }
         let log_time_s = message.log_time as f64 * 1e-9;
@@ -210,7 +221,7 @@ impl Source for Recording {
     }
 
     fn seek(&mut self, index: u64) -> bool {
-        let Some(frames) = self.frames() else { return false };
+        let Some(frames) = self.frames() else { return self.pass_over(index) };
         let (mut file, mut of_file) = (0, index.min(frames));
         while file + 1 < self.files.len() && of_file >= self.counts[file].unwrap_or(0) {
             of_file -= self.counts[file].unwrap_or(0);
@@ -227,7 +238,7 @@ impl Source for Recording {
         if !is_there || !self.reader.seek(&self.choice.topic, of_file - lead).unwrap_or(false) {
             return false;
         }
-        (self.next, self.of_file, self.passed, self.is_over) = (index.min(frames), of_file, lead, false);
+        (self.next, self.of_file, self.passed, self.is_over) = (index.min(frames), of_file - lead, lead, false);
         true
     }
 }

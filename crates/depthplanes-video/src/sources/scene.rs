@@ -3,8 +3,8 @@
 use crate::error::{Error, Result};
 use crate::frame::VideoFrame;
 use crate::source::{Source, SourceInfo, SourceOptions};
-use depthplanes::scene::{ScenePixels, Walk};
-use depthplanes_io::{Frame, Pixels, Provenance, ReadOptions};
+use depthplanes::scene::Walk;
+use depthplanes_io::{Frame, ReadOptions};
 
 pub(super) const SCENE: SourceInfo = SourceInfo {
     name: "scene",
@@ -58,26 +58,8 @@ fn open(word: &str, options: &SourceOptions) -> Result<Box<dyn Source>> {
 
 impl Moving {
     fn read(&self, index: u64) -> Result<VideoFrame> {
-        let scene = self.walk.frame(index)?;
-        let mut sensor = scene.sensor;
-        (sensor.noise, sensor.smooth_noise) = (self.options.noise, self.options.smooth_noise);
-        let pixels = match scene.pixels {
-            ScenePixels::U8(pixels) => Pixels::U8(pixels),
-            ScenePixels::U16(pixels) => Pixels::U16(pixels),
-            ScenePixels::F32(pixels) => Pixels::F32(pixels),
-        };
-        let frame = Frame {
-            width: scene.width,
-            height: scene.height,
-            pixels,
-            missing: None,
-            valid_range: None,
-            sensor,
-            format: "scene",
-            encoding: "scene",
-            provenance: Provenance { encoding: "a synthetic scene knows its own".into(), ..Provenance::default() },
-            warnings: Vec::new(),
-        };
+        let mut frame = Frame::from(self.walk.frame(index)?);
+        (frame.sensor.noise, frame.sensor.smooth_noise) = (self.options.noise, self.options.smooth_noise);
         let pose = self.walk.pose(index)?;
         let up = self.tells_up.then(|| pose.to_camera(WORLD_UP));
         let (pose, time_s) = (self.tells_pose.then_some(pose), Some(index as f64 / RATE));

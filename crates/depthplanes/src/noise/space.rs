@@ -26,14 +26,6 @@ impl Space {
         }
     }
 
-    /// q of a point infinitely far away. Disparity whose offset nobody states is taken to have none.
-    pub(crate) fn at_infinity(value_kind: ValueKind) -> f64 {
-        match value_kind {
-            ValueKind::InverseDepth { slope, offset } => -offset / slope,
-            ValueKind::Depth { .. } | ValueKind::Disparity => 0.0,
-        }
-    }
-
     /// q of a map value.
     #[inline(always)]
     pub fn q(self, value: f64) -> f64 {

@@ -13,7 +13,6 @@ use super::redundant::Redundancy;
 use super::refine::Refiner;
 use super::region::{Region, find_boxes, of_image};
 use super::thresholds::SHOWN_MOST;
-use crate::camera::ValueKind;
 use crate::components::ConnectedComponents;
 use crate::components::boundary::Boundary;
 use crate::components::gaps::{Bridge, Measured};
@@ -107,7 +106,7 @@ impl Runner {
         self.find_redundant(&noise, threads);
         self.mark_curved(Sensing { noise: &noise, rays }, threads);
         observe(Checkpoint::Judged, self, &noise);
-        self.drop_what_is_no_plane(job.sensor.value_kind, threads);
+        self.drop_what_is_no_plane(rays, threads);
         job.done("judge");
 
         self.assign(&noise, false, threads);
@@ -217,10 +216,10 @@ impl Runner {
     }
 
     /// Leaves out regions that larger ones explain, and those that are seen edge-on.
-    fn drop_what_is_no_plane(&mut self, value_kind: ValueKind, threads: usize) {
+    fn drop_what_is_no_plane(&mut self, rays: &Rays, threads: usize) {
         let Runner { pyramid, regions, merger, redundancy, .. } = self;
         let mut redundant = redundancy.is_redundant.iter();
-        let goes = |region: &Region| redundant.next() == Some(&true) || region.is_edge_on(value_kind);
+        let goes = |region: &Region| redundant.next() == Some(&true) || region.is_edge_on(rays);
         merger.drop(&mut pyramid.grids[0], regions, threads, goes);
     }
 

@@ -2,17 +2,16 @@
 
 use super::grid::{Cell, Grid};
 use super::layout::AffineMap;
-use super::thresholds::EDGE_ON;
-use crate::camera::ValueKind;
+use super::thresholds::GRAZING;
 use crate::error::Result;
 use crate::map::DepthView;
 use crate::methods::rays::Rays;
-use crate::noise::{NoiseModel, Space};
+use crate::noise::NoiseModel;
 use crate::statistics::least_squares::Moments;
 use crate::util::memory::reserve_to;
 use crate::util::runs::each_run;
 use crate::util::switches::is_on;
-use crate::util::vec3::Vec3;
+use crate::util::vec3::{Vec3, dot};
 
 /// Below so many pixels a region's plane is too uncertain to be held against a neighbour: the cell is
 /// tested against the plane of both.
@@ -79,10 +78,12 @@ impl Region {
         [a, b, self.at(u as f64, v as f64) as f32]
     }
 
-    /// How much q changes from one pixel to the next, as a share of what q in the middle is from that at infinite range.
-    pub(super) fn steepness(&self, at_infinity: f64) -> f64 {
+    /// The angle at which its plane is seen in its middle, degrees; 0 where it runs towards the camera, 90 where it faces it.
+    pub(super) fn grazing_deg(&self, rays: &Rays) -> f64 {
         let [u, v] = self.middle;
-        self.abc[0].hypot(self.abc[1]) / (self.at(u, v) - at_infinity).abs()
+        let (normal, point) = (self.inverse(rays), rays.at([u, v], self.at(u, v)));
+        // normal . point is 1.
+        (1.0 / (dot(normal, normal) * dot(point, point)).sqrt()).min(1.0).asin().to_degrees()
     }
 
     /// Its squared residuals as a multiple of what the noise leaves. A wall that a camera bows lies off its plane by more
@@ -180,8 +181,8 @@ impl Region {
     }
 
     /// Whether it is seen too much edge-on for a plane.
-    pub(super) fn is_edge_on(&self, value_kind: ValueKind) -> bool {
-        is_on("edge-on") && self.steepness(Space::at_infinity(value_kind)) > EDGE_ON
+    pub(super) fn is_edge_on(&self, rays: &Rays) -> bool {
+        is_on("edge-on") && self.grazing_deg(rays) < GRAZING
     }
 }
 
@@ -290,9 +291,14 @@ pub(super) fn find_boxes(grid: &Grid, all: &[Region], boxes: &mut Vec<CellBox>) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::camera::{Intrinsics, ValueKind};
     use crate::methods::planar::grid::{NONE, Place};
     use crate::methods::planar::testing::{Made, SIGMA, Stages, THRESHOLD, noise, patchy, plane_of, planes};
+    use crate::sensor::Sensor;
     use crate::util::random::Random;
+
+    /// Focal length, pixels.
+    const FOCAL: f64 = 585.0;
 
     /// A plane of 128 x 64 pixels, 40 in the middle.
     fn slope(u: f64, v: f64) -> f64 {
@@ -381,8 +387,10 @@ mod tests {
     }
 
     #[test]
-    fn what_doubles_its_depth_within_four_pixels_is_seen_edge_on() {
-        let at = |share: f64, q: f64, infinity: f64| {
+    fn what_is_seen_at_a_grazing_angle_is_seen_edge_on() {
+        // q changes by a share of what it is from that at infinite range: by 1 / (f tan angle).
+        let at = |degrees: f64, q: f64, infinity: f64| {
+            let share = 1.0 / (FOCAL * degrees.to_radians().tan());
             let made = Made::exact([16, 16], |u, v| {
                 q + share * (q - infinity) * (0.6 * (u as f64 - 7.5) + 0.8 * (v as f64 - 7.5))
             });
@@ -390,11 +398,16 @@ mod tests {
             Region::of(&stages.run.pyramid.grids[2].cell(Place::new(0, 0)))
         };
         let rig = ValueKind::InverseDepth { slope: 0.01, offset: -0.3 }; // 30 is infinitely far
+        let camera = Intrinsics::new(FOCAL, FOCAL, 7.5, 7.5).unwrap();
         for (value_kind, infinity) in
             [(ValueKind::Disparity, 0.0), (ValueKind::Depth { metres: 1.0 }, 0.0), (rig, 30.0)]
         {
-            assert!(at(0.26, 40.0, infinity).is_edge_on(value_kind), "{value_kind:?}");
-            assert!(!at(0.24, 40.0, infinity).is_edge_on(value_kind), "{value_kind:?}");
+            let rays = Rays::of(&Sensor::default().value_kind(value_kind).intrinsics(camera), 16, 16);
+            for degrees in [1.9, 2.1, 30.0] {
+                let region = at(degrees, 40.0, infinity);
+                assert!((region.grazing_deg(&rays) - degrees).abs() < 1e-3, "{value_kind:?}");
+                assert_eq!(region.is_edge_on(&rays), degrees < 2.0, "{value_kind:?}");
+            }
         }
     }
 

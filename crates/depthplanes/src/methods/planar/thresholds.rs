@@ -59,10 +59,12 @@ pub(super) const SHOWN: f64 = 0.5;
 /// Most times the smooth part may be that was estimated: where even more is shown, the regions are wrong.
 pub(super) const SHOWN_MOST: f64 = 10.0;
 
-/// Largest change of q from one pixel to the next, as a share of q in the middle of a region. Where it is
-/// more, depth doubles within four pixels, and the place of a surface within its pixel decides where it is: flying pixels between
-/// two surfaces look so, and planes through the camera. The floor that a camera sees from 5 cm above it, 80 x 60 pixels, has 1/15.
-pub(super) const EDGE_ON: f64 = 1.0 / 4.0;
+/// Smallest angle, degrees, between a region's plane and the ray through the middle of the region. Below it depth changes by
+/// 5 % and more from one pixel of a camera of 585 pixels of focal length to the next: pixels of two surfaces that are one
+/// behind the other, and flying pixels between them, lie on such planes, which pass close by the camera. Recorded frames are the
+/// same from 2 to 5. A camera 5 cm above the floor sees it at 12 from 0.1 m on, at 3 from 0.5 m on, and at 1.4, too little,
+/// if its range begins at 1 m.
+pub(super) const GRAZING: f64 = 2.0;
 
 /// Smallest bow of a curved region, root mean square, in deviations of the smooth part.
 pub(super) const BOW: f64 = 1.7;

@@ -9,11 +9,12 @@ use super::grid::{Grid, NONE};
 use super::grow::fewest;
 use super::pipeline::{Checkpoint, Runner};
 use super::region::{CURVED_LABEL, Region};
-use super::thresholds::EDGE_ON;
+use super::thresholds::GRAZING;
 use crate::camera::{HessianNormalForm, ValueKind};
 use crate::detection::Detection;
 use crate::explanation::{Finding, Limit};
 use crate::methods::noise::stated;
+use crate::methods::rays::Rays;
 use crate::noise::scales::RAY;
 use crate::noise::{NoiseModel, SensorNoise, Space};
 use crate::sensor::Sensor;
@@ -309,12 +310,12 @@ impl Trace {
             self.findings.push(finding.refusing(is_redundant));
         }
         let region = &run.regions.all[id as usize];
-        let is_edge_on = region.is_edge_on(self.sensor.value_kind);
+        let rays = Rays::of(&self.sensor, run.affine.width, run.affine.height);
+        let is_edge_on = region.is_edge_on(&rays);
         if is_edge_on {
             let finding = Finding::new("judge", "is it seen edge-on?", "dropped, it runs away from the camera");
-            let finding = finding
-                .with("change over a pixel", region.steepness(Space::at_infinity(self.sensor.value_kind)), "")
-                .limit(Limit::AtMost(EDGE_ON));
+            let finding =
+                finding.with("angle to the ray", region.grazing_deg(&rays), "degrees").limit(Limit::AtLeast(GRAZING));
             self.findings.push(finding.refusing(true));
         }
         self.fate = match (sign, is_redundant) {

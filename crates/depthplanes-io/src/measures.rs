@@ -1,4 +1,4 @@
-//! The measures of a prediction against the truth: one table, which `score` and `eval` print.
+//! The measures of a prediction against the truth as one table, which `score` and `eval` print and write.
 
 use depthplanes::metrics::{
     Contingency, Evops, Partial, Partition, SegComp, SurfaceCounts, Tolerance, evops, partition, segcomp,
@@ -7,18 +7,22 @@ use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
 /// What all measures say of a prediction.
-pub(crate) struct Scores {
+pub struct Scores {
     /// Planes of the truth and of the prediction.
-    pub(crate) planes: (usize, usize),
-    pub(crate) segcomp: SegComp,
-    pub(crate) evops: Evops,
-    pub(crate) partition: Option<Partition>,
-    pub(crate) on_planes: Option<Partition>,
+    pub planes: (usize, usize),
+    /// SegComp's classes of planes.
+    pub segcomp: SegComp,
+    /// EVOPS' measures.
+    pub evops: Evops,
+    /// Measures of partitions, over all pixels; `None` for maps without a pixel.
+    pub partition: Option<Partition>,
+    /// The same over the pixels on planes of the truth; `None` if there are none.
+    pub on_planes: Option<Partition>,
 }
 
 impl Scores {
     /// Of a table of labels against each other.
-    pub(crate) fn of(table: &Contingency, tolerance: Tolerance) -> Self {
+    pub fn of(table: &Contingency, tolerance: Tolerance) -> Self {
         Scores {
             planes: (table.truth_planes().len(), table.predicted_planes().len()),
             segcomp: segcomp(table, tolerance),
@@ -40,18 +44,21 @@ enum Reading {
 use Reading::{Count, Known, Share};
 
 /// One measure: a line of the table, a field of the JSON.
-pub(crate) struct Measure {
+pub struct Measure {
     /// The JSON object that it belongs to.
-    pub(crate) family: &'static str,
-    pub(crate) name: &'static str,
+    pub family: &'static str,
+    /// Its name, the field of that object.
+    pub name: &'static str,
     /// Heading of its column in the table of several pairs; empty if it has none.
-    pub(crate) column: &'static str,
-    pub(crate) meaning: &'static str,
+    pub column: &'static str,
+    /// What it says, in words.
+    pub meaning: &'static str,
     reading: Reading,
 }
 
 impl Measure {
-    pub(crate) fn value(&self, scored: &Scores) -> Option<f64> {
+    /// Its value; `None` for predictions that have none.
+    pub fn value(&self, scored: &Scores) -> Option<f64> {
         match self.reading {
             Count(count) => Some(count(scored) as f64),
             Share(share) => Some(share(scored)),
@@ -60,14 +67,15 @@ impl Measure {
     }
 
     /// For people.
-    pub(crate) fn written(&self, scored: &Scores) -> String {
+    pub fn written(&self, scored: &Scores) -> String {
         match self.reading {
             Count(count) => count(scored).to_string(),
             _ => decimal(self.value(scored)),
         }
     }
 
-    pub(crate) fn json(&self, scored: &Scores) -> Value {
+    /// Its value as JSON: counts are whole numbers.
+    pub fn json(&self, scored: &Scores) -> Value {
         match self.reading {
             Count(count) => count(scored).into(),
             _ => self.value(scored).into(),
@@ -87,7 +95,7 @@ const fn measure(
 
 /// All measures, in the order of the table; a family's measures stand together.
 #[rustfmt::skip]
-pub(crate) const MEASURES: &[Measure] = &[
+pub const MEASURES: &[Measure] = &[
     measure("planes", "truth", "truth", "planes of the truth", Count(|s| s.planes.0)),
     measure("planes", "predicted", "pred", "predicted planes", Count(|s| s.planes.1)),
     measure("segcomp", "correct", "correct", "truth planes found by one predicted plane", Count(|s| s.segcomp.correct.len())),
@@ -136,7 +144,7 @@ const COUNTS: [(&str, OfSurfaces); 8] = [
 ];
 
 /// The measures of a partial truth, by `family.name`: counts, so that those of several maps can be added up.
-pub(crate) fn of_surfaces(found: &Partial) -> BTreeMap<String, f64> {
+pub fn of_surfaces(found: &Partial) -> BTreeMap<String, f64> {
     let of_family = |(family, least): (&str, u64)| {
         let counts = found.of_at_least(least);
         COUNTS.map(|(name, count)| (format!("{family}.{name}"), count(&counts) as f64))
@@ -147,7 +155,7 @@ pub(crate) fn of_surfaces(found: &Partial) -> BTreeMap<String, f64> {
 }
 
 /// An object for each family, with a field for each of its measures.
-pub(crate) fn families(value: impl Fn(&Measure) -> Value) -> Map<String, Value> {
+pub fn families(value: impl Fn(&Measure) -> Value) -> Map<String, Value> {
     let mut all = Map::new();
     for measure in MEASURES {
         let family = all.entry(measure.family).or_insert_with(|| json!({}));
@@ -157,6 +165,6 @@ pub(crate) fn families(value: impl Fn(&Measure) -> Value) -> Map<String, Value> 
 }
 
 /// Three decimals, or a dash.
-pub(crate) fn decimal(value: Option<f64>) -> String {
+pub fn decimal(value: Option<f64>) -> String {
     value.map_or("-".into(), |value| format!("{value:.3}"))
 }

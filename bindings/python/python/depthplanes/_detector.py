@@ -1,0 +1,190 @@
+"""From maps to planes."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _native
+from ._errors import InputError, InputTypeError, ReadingWarning
+from ._frame import Frame
+from ._options import Camera, DetectorOptions, Path, reading_of, split
+from ._planes import Planes
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+
+class Detector:
+    """Finds planes in the maps of one camera.
+
+    Keep it for all frames of the camera: after the first frame of a size it needs no further memory. Threads of Python may
+    share it, and run at the same time. The same map gives the same planes, whatever came before.
+
+    Parameters
+    ----------
+    sensor : str, optional
+        A known sensor, such as ``"kinect1"``: its unit, its nominal camera and its noise.
+        ``depthplanes.tables()["sensors"]`` lists them.
+    camera : (fx, fy, cx, cy), 3 x 3 array, or path, optional
+        Focal lengths and principal point in pixels, the matrix of them, or a camera file of ROS, OpenCV, RealSense, COLMAP,
+        KITTI and many more programs. Without a camera planes have labels and no metres.
+    unit : str, optional
+        What the numbers mean: ``"mm"``, ``"m"``, ``"tum"`` (1/5000 m), ``"disparity"``, ``"inverse-depth"`` and others
+        (``depthplanes.tables()["units"]``). Without it 16-bit numbers are millimetres, floats are metres, and 8-bit numbers
+        are grey levels without a unit.
+    method : str, optional
+        ``"planar"``, which needs no parameter, or another of ``depthplanes.tables()["methods"]``.
+    **options
+        More of the map: `scale` (map units per metre), `depth_scale` (metres per map unit), `ray_distance` (the numbers are
+        distances along the rays), `disparity` with `focal` (pixels), `baseline` (metres) and `doffs` (pixels) of a stereo
+        rig, `missing` (a number that means so, beside 0, NaN and infinity), `valid_range` (low, high; map units),
+        `camera_size` (width, height of the picture that the camera is for), `rectified` (whether lens distortion is
+        ignored), `swap_bytes`, `noise_table` (a CSV file, or rows of range and standard deviation in metres).
+        How it works: `threads` (1), `curved` (whether curved surfaces are wanted as well), `merge_coplanar` (degrees,
+        metres: within what pieces of one plane are joined), and the parameters of the method, such as `min_pixels`
+        (``depthplanes.tables()["methods"]``).
+
+    Raises
+    ------
+    InputError
+        For a value that is not accepted; the text says what is.
+    InputTypeError
+        For a keyword that the method does not have.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> depth = np.full((480, 640), 2.0, dtype=np.float32)  # a wall, 2 m away
+    >>> detector = depthplanes.Detector(camera=(525, 525, 319.5, 239.5))
+    >>> planes = detector(depth)
+    >>> len(planes), planes.distances, planes.pixel_counts
+    (1, array([2.]), array([307200]))
+    """
+
+    def __init__(
+        self,
+        sensor: str | None = None,
+        camera: Camera | None = None,
+        unit: str | None = None,
+        method: str = "planar",
+        **options: Unpack[DetectorOptions],
+    ) -> None:
+        stated, parameters = split(options)
+        threads, curved = parameters.pop("threads", 1), parameters.pop("curved", False)
+        merge_coplanar = parameters.pop("merge_coplanar", None)
+        self._reading = reading_of(sensor, camera, unit, stated)
+        self._native = _native.Detector(self._reading, method, parameters, threads, curved, merge_coplanar)
+
+    def __call__(self, depth: npt.ArrayLike | Frame | Path) -> Planes:
+        """Finds the planes of one map.
+
+        Parameters
+        ----------
+        depth : array of shape (height, width), Frame, or path
+            The map: an array of NumPy, or anything that becomes one without a copy (``__array__``, DLPack), such as a
+            tensor of PyTorch or a DataArray of xarray. Pixels of type uint8, uint16 and float32 are read where they lie,
+            also in a crop of a larger array; they must not be written to meanwhile. Other types are converted. A `Frame`
+            that was read without a word about it, or the path of a file.
+
+        Returns
+        -------
+        Planes
+            The largest first.
+
+        Raises
+        ------
+        InputError, InputTypeError, FileError
+            For what is no map.
+
+        Warns
+        -----
+        ReadingWarning
+            With what is odd about the first map of each size and type; of each file and each frame.
+        """
+        planes, is_first = self._find(depth)
+        return _warned(planes) if is_first else planes
+
+    def _find(self, depth: npt.ArrayLike | Frame | Path) -> tuple[Planes, bool]:
+        """The planes, and whether it is to be said what is odd about the map."""
+        if type(depth) is np.ndarray:  # most calls; all else takes longer to tell apart
+            found, is_first = self._native.detect(depth)
+            return Planes(found), is_first
+        if isinstance(depth, (str, os.PathLike)):
+            return Planes(self._native.detect_file(os.fspath(depth))), True
+        if isinstance(depth, Frame):
+            if not self._reading.is_empty():
+                raise InputError(
+                    "the frame was read already, and knows its sensor, camera and unit; accepted: a Detector without these "
+                    "for frames, or the array (frame.depth) or the path of the file for this one"
+                )
+            return Planes(self._native.detect_frame(depth._native)), True
+        found, is_first = self._native.detect(as_array(depth))
+        return Planes(found), is_first
+
+    def __repr__(self) -> str:
+        parameters = "".join(f", {name}={value:g}" for name, value in self.parameters.items())
+        return f"Detector(method={self._native.parameters()[0]!r}{parameters})"
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The value of each parameter of the method."""
+        return {name.replace("-", "_"): value for name, value in self._native.parameters()[1]}
+
+
+def detect(
+    depth: npt.ArrayLike | Frame | Path,
+    *,
+    sensor: str | None = None,
+    camera: Camera | None = None,
+    unit: str | None = None,
+    method: str = "planar",
+    **options: Unpack[DetectorOptions],
+) -> Planes:
+    """Finds the planes of one map. For many maps of a camera keep a `Detector`, which takes the same words.
+
+    Parameters
+    ----------
+    depth : array of shape (height, width), Frame, or path
+        The map, as `Detector.__call__` takes it.
+    sensor, camera, unit, method, **options
+        As for `Detector`.
+
+    Returns
+    -------
+    Planes
+        The largest first.
+
+    Examples
+    --------
+    >>> frame = depthplanes.scene("planes3:sensor=clean_mm")
+    >>> depthplanes.detect(frame.depth, unit="mm", camera=frame.camera).distances.round(2)
+    array([2.14, 1.4 , 2.17])
+    """
+    planes, _ = Detector(sensor, camera, unit, method, **options)._find(depth)
+    return _warned(planes)
+
+
+def as_array(depth: Any) -> npt.NDArray[Any]:
+    """The map as an array of NumPy, without a copy where that can be; pixels that are masked are 0."""
+    if isinstance(depth, np.ma.MaskedArray):
+        return depth.filled(0)
+    if isinstance(depth, np.ndarray):
+        return depth
+    if not hasattr(depth, "__array__") and hasattr(depth, "__dlpack__"):
+        return np.from_dlpack(depth)
+    array = np.asarray(depth)
+    if array.dtype == np.object_:
+        raise InputTypeError(f"the map is a {type(depth).__name__}; accepted: an array of shape (height, width)")
+    return array
+
+
+def _warned(planes: Planes) -> Planes:
+    """Warns whoever called the caller of what is odd."""
+    for note in planes.notes:
+        warnings.warn(note, ReadingWarning, stacklevel=3)
+    return planes
