@@ -15,6 +15,8 @@ const GRAVITY: f64 = 9.806_65;
 /// nobody calibrated by 50 mg. A sensor that accelerates along gravity by more, or across it by a third of gravity, is not
 /// averaged.
 const TOLERANCE: f64 = 0.5;
+/// Angular velocity, rad/s, above which there is no gyroscope: small ones measure up to 70.
+const FASTEST: f64 = 100.0;
 /// Seconds of the average with a gyroscope. One that nobody calibrated drifts by 1 degree a second, thus 2 degrees in that time;
 /// a floor may lean by 10 against up.
 const WITH_GYROSCOPE_S: f64 = 2.0;
@@ -48,8 +50,9 @@ impl Filter {
             *self = Filter { odd: self.odd, ..Filter::default() };
         }
         self.read_s = Some(time_s);
-        self.window_s = if reading.turn_rate.is_some() { WITH_GYROSCOPE_S } else { ALONE_S };
-        if let Some(rate) = reading.turn_rate {
+        let turn_rate = reading.turn_rate.filter(|rate| dot(*rate, *rate) <= FASTEST * FASTEST);
+        self.window_s = if turn_rate.is_some() { WITH_GYROSCOPE_S } else { ALONE_S };
+        if let Some(rate) = turn_rate {
             self.mean = turned(self.mean, rate.map(|rate| rate * step_s));
         }
         if let Some(force) = reading.acceleration {
@@ -176,6 +179,10 @@ mod tests {
         // One reading that is gravity ends that.
         filter.add(1.5, &Imu { acceleration: Some([0.0, 9.8, 0.0]), turn_rate: None });
         assert_eq!((filter.odd(), filter.up(1.5)), (None, Some([0.0, 9.8, 0.0])));
+        // Numbers that no sensor measures change nothing.
+        let mad = Imu { acceleration: Some([1e300; 3]), turn_rate: Some([1e300, 0.0, 0.0]) };
+        filter.add(1.51, &mad);
+        assert_eq!(filter.up(1.51), Some([0.0, 9.8, 0.0]));
         // It begins anew where time goes back.
         filter.add(0.5, &Imu { acceleration: Some([9.8, 0.0, 0.0]), turn_rate: None });
         assert_eq!(filter.up(0.5), Some([9.8, 0.0, 0.0]));

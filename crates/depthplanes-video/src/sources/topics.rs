@@ -43,8 +43,6 @@ pub(super) struct Looked {
     cameras: BTreeMap<String, (String, String)>,
     /// Topics with inertial sensors; whether they have an accelerometer, and the frame of coordinates.
     imus: BTreeMap<String, (bool, String)>,
-    /// Topics with transforms.
-    transforms: BTreeSet<String>,
     /// All topics, with the type of each.
     all: BTreeMap<String, String>,
     fault: Option<Error>,
@@ -65,11 +63,10 @@ pub(super) fn look(reader: &mut Reader) -> Looked {
         let Some(channel) = reader.channel(message.channel) else { continue };
         let Some(row) = type_of(&channel.schema, &channel.encoding) else { continue };
         let topic = channel.topic.clone();
-        if looked.knows(&topic) {
+        if row.kind == Kind::Transforms || looked.knows(&topic) {
             continue;
         }
         match ((row.read)(message.data()), row.kind) {
-            (_, Kind::Transforms) => _ = looked.transforms.insert(topic),
             (Ok(read), _) => match read.content {
                 Content::Camera(text) => _ = looked.cameras.insert(topic, (read.frame_id, text)),
                 Content::Imu(imu) => _ = looked.imus.insert(topic, (imu.acceleration.is_some(), read.frame_id)),
@@ -86,18 +83,41 @@ pub(super) fn look(reader: &mut Reader) -> Looked {
     looked
 }
 
+/// All transforms that never change, of as much of the file as is looked through.
+fn frames(reader: &mut Reader) -> Frames {
+    let is_static = |channel: &&crate::mcap::Channel| {
+        let row = type_of(&channel.schema, &channel.encoding);
+        channel.topic.ends_with(STATIC) && row.is_some_and(|row| row.kind == Kind::Transforms)
+    };
+    let topics: BTreeSet<String> =
+        reader.channels().map(|(_, channel)| channel).filter(is_static).map(|channel| channel.topic.clone()).collect();
+    let mut frames = Frames::default();
+    if topics.is_empty() {
+        return frames;
+    }
+    let most = reader.bytes_read + MOST_LOOKED;
+    reader.rewind(topics);
+    while let Some(Ok(message)) = reader.next().filter(|_| reader.bytes_read <= most) {
+        let Some(channel) = reader.channel(message.channel) else { continue };
+        let Some(row) = type_of(&channel.schema, &channel.encoding) else { continue };
+        if let Ok(Content::Transforms(transforms)) = (row.read)(message.data()).map(|read| read.content) {
+            frames.add(transforms);
+        }
+    }
+    frames
+}
+
 impl Looked {
     fn knows(&self, topic: &str) -> bool {
-        let of_one =
-            [self.pictures.contains_key(topic), self.cameras.contains_key(topic), self.imus.contains_key(topic)];
-        of_one.contains(&true) || self.transforms.contains(topic)
+        self.pictures.contains_key(topic) || self.cameras.contains_key(topic) || self.imus.contains_key(topic)
     }
 
     /// Whether there may be a topic of which nothing was seen yet.
     fn misses(&self, reader: &Reader) -> bool {
         let may = |(_, channel): (u16, &crate::mcap::Channel)| {
-            let is_read = type_of(&channel.schema, &channel.encoding).is_some();
-            is_read && !self.knows(&channel.topic) && reader.count(&channel.topic) != Some(0)
+            let row = type_of(&channel.schema, &channel.encoding);
+            let is_looked_at = row.is_some_and(|row| row.kind != Kind::Transforms);
+            is_looked_at && !self.knows(&channel.topic) && reader.count(&channel.topic) != Some(0)
         };
         !reader.has_summary() || reader.channels().any(may)
     }
@@ -154,27 +174,7 @@ impl Looked {
     pub(super) fn gravity(&self, choice: &Choice, reader: &mut Reader) -> std::result::Result<Option<Gravity>, String> {
         let Some(imu) = choice.imu.as_ref().map_err(String::clone)? else { return Ok(None) };
         let ((_, frame), (_, camera)) = (&self.imus[imu], &self.pictures[&choice.topic]);
-        Gravity::new(imu, frame, camera, &self.frames(reader)).map(Some)
-    }
-
-    /// All transforms that never change.
-    fn frames(&self, reader: &mut Reader) -> Frames {
-        let topics: BTreeSet<String> =
-            self.transforms.iter().filter(|topic| topic.ends_with(STATIC)).cloned().collect();
-        let mut frames = Frames::default();
-        if topics.is_empty() {
-            return frames;
-        }
-        let most = reader.bytes_read + MOST_LOOKED;
-        reader.rewind(topics);
-        while let Some(Ok(message)) = reader.next().filter(|_| reader.bytes_read <= most) {
-            let Some(channel) = reader.channel(message.channel) else { continue };
-            let Some(row) = type_of(&channel.schema, &channel.encoding) else { continue };
-            if let Ok(Content::Transforms(transforms)) = (row.read)(message.data()).map(|read| read.content) {
-                frames.add(transforms);
-            }
-        }
-        frames
+        Gravity::new(imu, frame, camera, &frames(reader)).map(Some)
     }
 
     /// The topics with depth and what it is in; 16 bits of grey are depth where there is nothing else.
