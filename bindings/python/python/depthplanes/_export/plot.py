@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from .._optional import need
 
 if TYPE_CHECKING:
@@ -26,6 +28,9 @@ def plot(planes: Planes, ax: matplotlib.axes.Axes | None) -> matplotlib.axes.Axe
         if plane.pixel_count < SHARE * width * height:
             break
         text = f"{plane.label}" if plane.distance != plane.distance else f"{plane.label}\n{plane.distance:.2f} m"
-        u, v = plane.centroid_px
+        # On the plane, which its middle need not be.
+        rows, columns = np.nonzero(plane.mask)
+        nearest = np.argmin(np.hypot(columns - plane.centroid_px[0], rows - plane.centroid_px[1]))
+        u, v = columns[nearest], rows[nearest]
         ax.text(u, v, text, ha="center", va="center", size=7, bbox={"facecolor": "white", "alpha": 0.7, "lw": 0, "pad": 1})
     return ax
