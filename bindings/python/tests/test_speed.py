@@ -12,9 +12,9 @@ import pytest
 import depthplanes
 
 CALLS = 200
-#: Microseconds of a call over the Rust call inside it, of which a tenth of the calls must have less: the aim is 30 for the
-#: median, and other programs, which take the caches away, make it three times that.
-OVERHEAD_US = 100
+#: Most of a call over the Rust call inside it, microseconds and share, that a tenth of the calls must be below: the aim is 30 us
+#: for the median. Other programs take the caches and the cores away, from the Rust call too.
+OVERHEAD_US, SHARE = 100, 0.03
 CAMERA = (525.0, 525.0, 319.5, 239.5)
 
 
@@ -42,7 +42,7 @@ def test_a_call_costs_little_over_the_rust_call(frames, tell, unit, convert):
     tenth, median = statistics.quantiles(over, n=10)[0], statistics.median(over)
     what = f"{median:.1f} us over the Rust call of {statistics.median(inside):.2f} ms, medians of {CALLS}; a tenth less than {tenth:.1f} us"
     tell(f"640 x 480 {frames[0].dtype}: {what}:")
-    assert tenth < OVERHEAD_US
+    assert tenth < max(OVERHEAD_US, 1e3 * SHARE * statistics.median(inside))
 
 
 def test_four_threads_scale_as_the_cores_do(frames, tell):

@@ -172,7 +172,8 @@ def detect(
 def as_array(depth: Any) -> npt.NDArray[Any]:
     """The map as an array of NumPy, without a copy where that can be; pixels that are masked are 0."""
     if isinstance(depth, np.ma.MaskedArray):
-        return depth.filled(0)
+        filled: npt.NDArray[Any] = np.where(depth.mask, 0, depth.data).astype(depth.dtype, copy=False)
+        return filled
     if isinstance(depth, np.ndarray):
         return depth
     if not hasattr(depth, "__array__") and hasattr(depth, "__dlpack__"):

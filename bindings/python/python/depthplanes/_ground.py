@@ -143,7 +143,7 @@ def floor(
     Examples
     --------
     >>> ground = depthplanes.floor(depthplanes.scene("corridor:sensor=kinect,size=320x240"))
-    >>> round(ground.height, 1), ground.classes[0]
+    >>> round(ground.height, 1), ground.classes[ground.floor["label"] - 1]
     (1.4, 'floor')
     """
     planes = depth if isinstance(depth, Planes) else Detector(sensor, camera, unit, method, **options)(depth)

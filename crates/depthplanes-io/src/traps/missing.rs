@@ -54,7 +54,7 @@ fn count_where<T: Pixel>(map: &DepthView<'_, T>, holds: impl Fn(T) -> bool) -> u
 /// The largest value of a map of floats, if it is none that was measured.
 fn largest_float(map: &DepthView<'_, f32>, is_depth: bool) -> Option<(f64, usize, &'static str)> {
     // No value that is looked for is less; most maps have none of these.
-    let large = count_where(map, |value| (value >= LARGEST_HALF) & (value < f32::INFINITY));
+    let large = count_where(map, |value| (LARGEST_HALF..f32::INFINITY).contains(&value));
     if !is_many(large, map.area()) {
         return None;
     }
