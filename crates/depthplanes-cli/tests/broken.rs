@@ -45,7 +45,7 @@ const WRONG: &[(&[&str], &str)] = &[
     (&["detect", "map.pgm", "--repeat", "9999999999999"], "from 1 to 1000000"),
     (&["detect", "map.pgm", "--jobs", "0"], "from 1 to 1000000"),
     (&["detect", "map.pgm", "--labels", "l.tif"], ".png or .npy"),
-    (&["detect", "map.pgm", "--planes", "planes"], ".json or .csv"),
+    (&["detect", "map.pgm", "--planes", "planes"], ".json, .csv"),
     (&["detect", "map.pgm", "--labels", "no/l.png"], "the folder `no` does not exist"),
     (&["detect", "map.pgm", "--labels", "folder.png"], "this is a folder"),
     (&["detect", "same.png", "--labels", "same.png"], "would overwrite the input same.png"),

@@ -49,10 +49,13 @@ impl Output {
         })
     }
 
-    /// The extensions accepted, in words: `.png or .npy`.
+    /// The extensions accepted, in words: `.png or .npy`, `.json, .csv or .geojson`.
     pub fn extensions(&self) -> String {
         let dotted: Vec<String> = self.writers.iter().map(|writer| format!(".{}", writer.extension)).collect();
-        dotted.join(" or ")
+        match &dotted[..] {
+            [others @ .., last] if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+            _ => dotted.concat(),
+        }
     }
 }
 
