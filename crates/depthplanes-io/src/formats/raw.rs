@@ -116,9 +116,8 @@ fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image> {
     if options.raw_type.is_none() && sample != Sample::U16 {
         let each = sample.bytes();
         let other = if each == 1 { "" } else { "; another is stated with --raw-type" };
-        image
-            .warnings
-            .push(format!("{each} byte{} a pixel are read as {name}{other}", if each == 1 { "" } else { "s" }));
+        let note = format!("{each} byte{} a pixel are read as {name}{other}", if each == 1 { "" } else { "s" });
+        image.warnings.insert(0, note); // before what is said of the values
     }
     if options.raw_type.is_none() && sample == Sample::U16 {
         image.warnings.extend(halves(bytes));
