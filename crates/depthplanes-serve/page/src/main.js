@@ -17,6 +17,11 @@ const page = { hello: null, frame: null, state: null, chosen: null, drawn: [], p
 
 const socket = new Socket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live`, receive, connected);
 const ask = (type, more) => socket.ask(type, more);
+/** Asks for parameters; what was refused before is over. */
+const setParameters = (type, more) => {
+    banner(null);
+    ask(type, more);
+};
 const view2d = new View2d(find("view2d"), at => {
     pick.pick(page.frame, at);
     view2d.at = at;
@@ -24,7 +29,7 @@ const view2d = new View2d(find("view2d"), at => {
 });
 const view3d = new View3d(find("view3d"));
 const pick = new Pick(find("pixel"), choose, ask);
-const sliders = new Sliders(find("parameters"), (name, value) => ask("set", { name, value }), () => ask("reset"));
+const sliders = new Sliders(find("parameters"), (name, value) => setParameters("set", { name, value }), () => setParameters("reset"));
 const timeline = new Timeline(document.querySelector("footer"), ask);
 const stages = new Stages(find("stages"), find("total"));
 globalThis.depthplanes = Object.assign(page, { view2d, view3d }); // for the browser's console, and for tests
