@@ -1,14 +1,18 @@
-"""Builds what the tests run, and finds the real maps."""
+"""Builds what the tests run."""
 
 import os
 import pathlib
 import subprocess
+import sys
 
 import pytest
 
 from worker import Worker
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "tests"))
+
+from shared_fixtures import data, tell  # noqa: E402, F401
 
 
 def build(*what):
@@ -50,24 +54,3 @@ def ros2_program():
 @pytest.fixture(scope="session")
 def rerun_program():
     return of_tests("depthplanes-rerun")
-
-
-@pytest.fixture(scope="session")
-def data():
-    """The folder of real maps; without it a test is skipped, on CI it fails."""
-    folder = pathlib.Path(os.environ.get("DEPTHPLANES_DATA", ROOT.parent / "shared" / "data"))
-    if not (folder / "MANIFEST.tsv").is_file():
-        message = f"no real maps at {folder}; DEPTHPLANES_DATA names their folder"
-        if os.environ.get("CI") == "true":
-            pytest.fail(message)
-        pytest.skip(message)
-    return folder
-
-
-@pytest.fixture
-def tell(capsys):
-    """Prints a line that is seen even if the test passes."""
-    def tell(line):
-        with capsys.disabled():
-            print(f"\n{line}", end=" ")
-    return tell

@@ -2,8 +2,10 @@
 
 import json
 import os
+import pathlib
 import signal
 import subprocess
+import sys
 import time
 
 import cv2
@@ -71,8 +73,9 @@ def test_the_package_finds_no_fault(record, tmp_path):
     path = record(SCENE)
     # Without a home it counts nobody.
     environment = {**os.environ, "HOME": str(tmp_path)}
+    viewer = pathlib.Path(sys.executable).with_name("rerun")  # of the environment, which need not be the shell's
     for words in (["verify"], ["print"], ["stats"]):
-        done = subprocess.run(["rerun", "rrd", *words, path], capture_output=True, text=True, env=environment)
+        done = subprocess.run([viewer, "rrd", *words, path], capture_output=True, text=True, env=environment)
         assert done.returncode == 0 and "error" not in done.stderr.lower().replace("without error", ""), done.stderr
 
 

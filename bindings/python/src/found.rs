@@ -366,7 +366,7 @@ impl Found {
     fn explain(&self, py: Python<'_>, u: usize, v: usize) -> Result<String> {
         let (frame, recipe) = (self.frame(py)?, &self.lent.pool.recipe);
         py.detach(|| {
-            let why = recipe.detector(frame.sensor).explain(frame.view()?, [u, v])?;
+            let why = recipe.detector().sensor(frame.sensor).explain(frame.view()?, [u, v])?;
             Ok(outputs::explanation_record(&self.source, recipe.method, &recipe.values, &why).to_string())
         })
     }

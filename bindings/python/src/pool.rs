@@ -13,13 +13,8 @@ const MOST_SPARES: usize = 4;
 /// Detectors of one recipe that are idle, and detections that nobody needs any more.
 pub(crate) struct Pool {
     pub(crate) recipe: Recipe,
-    idle: Mutex<Vec<Idle>>,
+    idle: Mutex<Vec<Detector>>,
     spares: Mutex<Vec<Detection>>,
-}
-
-struct Idle {
-    detector: Detector,
-    sensor: Sensor,
 }
 
 /// A detection that is on loan; its memory goes back when it is dropped.
@@ -44,28 +39,16 @@ impl Pool {
         map: impl FnOnce() -> depthplanes::Result<AnyView<'m>>,
         sensor: Sensor,
     ) -> depthplanes::Result<Lent> {
-        let mut idle = self.take(sensor);
+        let idle = locked(&self.idle).pop();
+        let mut detector = idle.unwrap_or_else(|| self.recipe.detector());
+        detector.set_sensor(sensor);
         let start = Instant::now();
-        idle.detector.detect(map()?)?;
+        detector.detect(map()?)?;
         let seconds = start.elapsed().as_secs_f64();
         let spare = locked(&self.spares).pop().unwrap_or_default();
-        let detection = idle.detector.exchange(spare);
-        locked(&self.idle).push(idle);
+        let detection = detector.exchange(spare);
+        locked(&self.idle).push(detector);
         Ok(Lent { detection, seconds, pool: self.clone() })
-    }
-
-    /// A detector for a sensor: an idle one that has it, or any idle one, or a new one.
-    fn take(&self, sensor: Sensor) -> Idle {
-        let taken = {
-            let mut idle = locked(&self.idle);
-            let at = idle.iter().position(|idle| idle.sensor == sensor);
-            at.map(|at| idle.swap_remove(at)).or_else(|| idle.pop())
-        };
-        match taken {
-            Some(idle) if idle.sensor == sensor => idle,
-            Some(idle) => Idle { detector: idle.detector.sensor(sensor), sensor },
-            None => Idle { detector: self.recipe.detector(sensor), sensor },
-        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use depthplanes::methods::{self, MethodInfo};
-use depthplanes::{Coplanar, Detector, Sensor};
+use depthplanes::{Coplanar, Detector};
 use std::collections::BTreeMap;
 
 /// A method with a value for each of its parameters, all checked.
@@ -48,10 +48,10 @@ impl Recipe {
     }
 
     /// A detector of it.
-    pub(crate) fn detector(&self, sensor: Sensor) -> Detector {
+    pub(crate) fn detector(&self) -> Detector {
         const CHECKED: &str = "the parameters were checked";
         let method = self.method.of_values(&self.values).expect(CHECKED);
-        let detector = Detector::new(method).expect(CHECKED).threads(self.threads).curved(self.curved).sensor(sensor);
+        let detector = Detector::new(method).expect(CHECKED).threads(self.threads).curved(self.curved);
         match self.coplanar {
             Some(within) => detector.merge_coplanar(within).expect(CHECKED),
             None => detector,

@@ -1,26 +1,18 @@
-"""Finds the real maps and the program that is built beside the package."""
+"""Finds the program that is built beside the package."""
 
 import os
 import pathlib
 import subprocess
+import sys
 
 import pytest
 
 import depthplanes
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.append(str(ROOT / "tests"))
 
-
-@pytest.fixture(scope="session")
-def data():
-    """The folder of real maps; without it a test is skipped, on CI it fails."""
-    folder = pathlib.Path(os.environ.get("DEPTHPLANES_DATA", ROOT.parent / "shared" / "data"))
-    if not (folder / "MANIFEST.tsv").is_file():
-        message = f"no real maps at {folder}; DEPTHPLANES_DATA names their folder"
-        if os.environ.get("CI") == "true":
-            pytest.fail(message)
-        pytest.skip(message)
-    return folder
+from shared_fixtures import data, tell  # noqa: E402, F401
 
 
 @pytest.fixture(scope="session")
@@ -46,14 +38,3 @@ def room():
 @pytest.fixture(scope="session")
 def planes(room):
     return depthplanes.detect(room)
-
-
-@pytest.fixture
-def tell(capsys):
-    """Prints a line that is seen even if the test passes."""
-
-    def tell(line):
-        with capsys.disabled():
-            print(f"\n{line}", end=" ")
-
-    return tell

@@ -4,7 +4,7 @@ use crate::failure::{Failure, Outcome};
 use crate::pool;
 use depthplanes::methods::{self, METHODS, MethodInfo};
 use depthplanes::outline::{Outliner, Outlines};
-use depthplanes::{AnyView, Coplanar, Detection, Detector, Sensor};
+use depthplanes::{Coplanar, Detection, Detector};
 use depthplanes_io::outputs::{Spread, Times};
 use depthplanes_io::{Frame, memory};
 use std::time::Instant;
@@ -146,10 +146,9 @@ fn lacks(method: &MethodInfo, name: &str) -> Failure {
     ))
 }
 
-/// A detector and the sensor it was made for.
+/// A detector, and what it has memory for.
 pub(crate) struct Runner<'a> {
     recipe: &'a Recipe,
-    sensor: Sensor,
     detector: Detector,
     /// What the detector has memory for already.
     kept: [u64; 2],
@@ -159,7 +158,7 @@ pub(crate) struct Runner<'a> {
 impl<'a> Runner<'a> {
     pub(crate) fn new(recipe: &'a Recipe) -> Self {
         let outliner = recipe.outliner().expect("the tolerance was checked");
-        Runner { recipe, sensor: Sensor::default(), detector: recipe.detector(), kept: [0; 2], outliner }
+        Runner { recipe, detector: recipe.detector(), kept: [0; 2], outliner }
     }
 
     /// Finds the planes of a frame; with `repeat` above 0 it also measures so many runs.
@@ -167,19 +166,16 @@ impl<'a> Runner<'a> {
     /// # Errors
     /// Those of the library.
     pub(crate) fn detect(&mut self, frame: &Frame, repeat: usize) -> Outcome<Found> {
-        self.sensor = frame.sensor;
-        self.detector.set_sensor(self.sensor);
         let needed = self.recipe.memory(frame);
         if needed > self.kept {
             memory::check(needed[0], needed[1])?;
             self.keep(needed);
         }
-        let view = frame.view()?;
-        let detection = self.detector.detect(view)?.clone();
-        let sensor = self.sensor;
-        let outline = |outliner: &mut Outliner| outliner.outline_seen_by(&detection, &sensor).cloned();
+        self.detector.set_sensor(frame.sensor);
+        let detection = self.detector.detect(frame.view()?)?.clone();
+        let outline = |outliner: &mut Outliner| outliner.outline_seen_by(&detection, &frame.sensor).cloned();
         let outlines = self.outliner.as_mut().map(outline).transpose()?;
-        let times = (repeat > 0).then(|| self.measure(view, repeat)).transpose()?;
+        let times = (repeat > 0).then(|| self.measure(frame, repeat)).transpose()?;
         Ok(Found { detection, outlines, times })
     }
 
@@ -199,7 +195,8 @@ impl<'a> Runner<'a> {
     }
 
     /// Times so many runs over a map that the detector has seen before.
-    fn measure(&mut self, view: AnyView<'_>, repeat: usize) -> Outcome<Times> {
+    fn measure(&mut self, frame: &Frame, repeat: usize) -> Outcome<Times> {
+        let view = frame.view()?;
         let mut totals = Vec::with_capacity(repeat);
         let mut stages: Vec<(&'static str, Vec<f64>)> = self.stages().map(|stage| (stage, vec![0.0; repeat])).collect();
         for run in 0..repeat {
@@ -214,7 +211,7 @@ impl<'a> Runner<'a> {
             };
             let detection = self.detector.detect_observed(view, &mut observe)?;
             if let Some(outliner) = &mut self.outliner {
-                outliner.outline_seen_by(detection, &self.sensor)?;
+                outliner.outline_seen_by(detection, &frame.sensor)?;
                 observe(OUTLINE);
             }
             totals.push(milliseconds(start.elapsed()));

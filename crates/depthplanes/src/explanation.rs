@@ -229,7 +229,7 @@ impl fmt::Display for Verdict {
             Verdict::Curved => write!(f, "No plane here: it is part of a curved surface; see `detect --curved`."),
             Verdict::EdgeOn => write!(
                 f,
-                "No plane here: the surface is seen at less than 2 degrees. It may be what a sensor sees between two surfaces, or pixels of both."
+                "No plane here: the surface is seen at less than 1.2 degrees. It may be what a sensor sees between two surfaces, or pixels of both."
             ),
             Verdict::Uneven { roughness } => write!(
                 f,
