@@ -299,7 +299,7 @@ fn a_surface_seen_edge_on_is_no_plane_and_explain_says_so() {
         (0..width * height).map(|at| (1.0 / q(at % width)) as f32).collect()
     };
     // In the middle, 2.5 columns on, a change of s at the seam is one of s / (1 + 2.5 s) of what is there.
-    for (per_pixel, is_plane) in [(0.2, true), (2.0, false)] {
+    for (per_pixel, is_plane) in [(0.05, true), (0.08, true), (0.2, false), (2.0, false)] {
         let map = map(per_pixel);
         let sensor = Sensor::default().value_kind(ValueKind::Depth { metres: 1.0 });
         let mut detector = Detector::new(Planar::default()).unwrap().sensor(sensor);
