@@ -3,6 +3,8 @@
 use crate::error::Result;
 use crate::found::Found;
 use depthplanes::track::{self, CameraPose, KEPT_FRAMES};
+use numpy::ndarray::Array2;
+use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, PoisonError};
@@ -19,18 +21,21 @@ impl Tracker {
         Tracker(Mutex::new(track::Tracker::default().kept_frames(kept_frames)))
     }
 
-    /// Takes in the next frame's planes: their ids, and a dictionary for each plane that is followed.
+    /// Takes in the next frame's planes: their ids, a dictionary for each plane that is followed, and the label image whose
+    /// borders do not flicker.
     fn track<'py>(
         &self,
         py: Python<'py>,
         found: &Found,
         pose: Option<([[f64; 3]; 3], [f64; 3])>,
-    ) -> Result<(Vec<u32>, Vec<Bound<'py, PyDict>>)> {
+    ) -> Result<(Vec<u32>, Vec<Bound<'py, PyDict>>, Bound<'py, PyArray2<u16>>)> {
         let pose = pose.map(|(rotation, translation_m)| CameraPose::new(rotation, translation_m)).transpose()?;
         let mut tracker = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let tracks = tracker.track(found.detection(), &found.sensor, pose.as_ref())?;
+        let (map, detection) = (found.frame(py)?.view()?, found.detection());
+        let tracks = tracker.track_with_map(map, detection, &found.sensor, pose.as_ref())?;
         let planes = tracks.planes.iter().map(|plane| record(py, plane)).collect::<PyResult<Vec<_>>>()?;
-        Ok((tracks.ids.clone(), planes))
+        let labels = Array2::from_shape_vec((detection.height, detection.width), tracks.labels.clone());
+        Ok((tracks.ids.clone(), planes, labels.expect("a label for each pixel").into_pyarray(py)))
     }
 }
 

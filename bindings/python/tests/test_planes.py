@@ -172,7 +172,10 @@ def test_a_video_keeps_its_ids_and_a_pose_helps():
         planes = detector(frame)
         tracks = tracker(planes, frame.pose)
     assert len(tracks.ids) == len(planes) and frame.time == pytest.approx(0.1)
-    assert np.count_nonzero(tracks.labels) == np.count_nonzero(planes.labels)
+    # Planes get back pixels at their borders, and lose none but to each other.
+    assert (tracks.labels[planes.labels > 0] > 0).all() and set(np.unique(tracks.labels)) <= {0, *tracks.ids.tolist()}
+    own = np.concatenate([[0], tracks.ids])[planes.labels]
+    assert 0 < np.count_nonzero(tracks.labels != own) < 0.1 * own.size
     seen = [plane for plane in tracks.planes if plane.label is not None]
     assert {plane.id for plane in seen} == set(tracks.ids.tolist())
     oldest = max(seen, key=lambda plane: plane.age)

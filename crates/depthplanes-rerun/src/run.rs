@@ -81,7 +81,8 @@ impl Search {
     fn write(&mut self, scene: &mut Scene, time: &TimePoint, mut video: VideoFrame) -> Outcome {
         let found = self.finder.find(&video)?;
         let pose = video.pose.filter(|_| !self.ignores_poses);
-        let tracks = self.tracker.track(found.detection, &video.frame.sensor, pose.as_ref())?;
+        let (map, sensor) = (video.frame.view()?, &video.frame.sensor);
+        let tracks = self.tracker.track_with_map(map, found.detection, sensor, pose.as_ref())?;
         video.pose = pose;
         let tracked = Tracked { video: &video, detection: found.detection, tracks, ground: None, dropped: 0 };
         scene.write(time, &tracked, found.ground)

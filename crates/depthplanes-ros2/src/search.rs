@@ -54,7 +54,8 @@ impl Search {
         if is_renumbered {
             self.tracker.forget();
         }
-        let tracks = self.tracker.track(found.detection, &video.frame.sensor, video.pose.as_ref())?;
+        let (map, sensor) = (video.frame.view()?, &video.frame.sensor);
+        let tracks = self.tracker.track_with_map(map, found.detection, sensor, video.pose.as_ref())?;
         self.last_id = tracks.ids.iter().copied().max().unwrap_or(0);
         Ok(Found { detection: found.detection, tracks, ground: found.ground, up: found.up, is_renumbered })
     }

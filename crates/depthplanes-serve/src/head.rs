@@ -32,7 +32,7 @@ pub(crate) fn message(about: About, video: &VideoFrame, found: &Found<'_>) -> By
     let picture = Picture::new(view, frame.sensor.value_kind);
     let mut arrays = Arrays::default();
     arrays.add_u16("depth", &picture.codes);
-    arrays.add_u16("labels", &thinned(&detection.labels, frame.width, picture.step));
+    arrays.add_u16("labels", &thinned(found.tracks.labels_of(detection), frame.width, picture.step));
     let marks = found.ground.map_or(&[][..], |ground| &ground.marks);
     if !marks.is_empty() {
         arrays.add_u8("marks", &thinned(marks, frame.width, picture.step));

@@ -90,7 +90,7 @@ impl Pipeline {
         let mut clock = Clock::new();
         let found = self.finder.find_observed(video, &mut |stage| clock.ends(stage))?;
         let pose = video.pose.as_ref().filter(|_| !self.ignores_poses);
-        let tracks = self.tracker.track(found.detection, sensor, pose)?;
+        let tracks = self.tracker.track_with_map(video.frame.view()?, found.detection, sensor, pose)?;
         clock.ends("track");
         let outlines = self.outliner.outline_seen_by(found.detection, sensor)?;
         clock.ends("outlines");

@@ -1,6 +1,6 @@
 //! How much tracking and the ground add to a frame's detection, on the frames of a source.
 //!
-//! `bench_track ROUNDS SOURCE..`: the frames are read once; then each round times, frame by frame, detection, tracking and ground,
+//! `bench_track ROUNDS SOURCE..`: the frames are read once; then each round times, frame by frame, detection, tracking, with borders that do not flicker and without, and ground,
 //! each with its own memory. Prints CSV: source, what, median and least milliseconds a frame. That every round gives the same
 //! ids is checked.
 
@@ -12,14 +12,14 @@ use std::error::Error;
 use std::time::Instant;
 
 /// What is timed.
-const NAMES: [&str; 4] = ["read", "detect", "track", "ground"];
+const NAMES: [&str; 5] = ["read", "detect", "track", "track with borders", "ground"];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let [rounds, sources @ ..] = &words[..] else { return Err("bench_track ROUNDS SOURCE..".into()) };
     println!("source,what,median_ms,least_ms");
     for source in sources {
-        let mut times: [Vec<f64>; 4] = Default::default();
+        let mut times: [Vec<f64>; 5] = Default::default();
         let frames = read(source, &mut times[0])?;
         let mut first = None;
         for _ in 0..rounds.parse()? {
@@ -49,8 +49,9 @@ fn read(source: &str, times: &mut Vec<f64>) -> Result<Vec<VideoFrame>, Box<dyn E
 }
 
 /// The ids of all frames, and how long each step took.
-fn round(frames: &[VideoFrame], times: &mut [Vec<f64>; 4]) -> Result<Vec<Vec<u32>>, Box<dyn Error>> {
-    let (mut detector, mut tracker, mut finder) = (Detector::default(), Tracker::default(), GroundFinder::default());
+fn round(frames: &[VideoFrame], times: &mut [Vec<f64>; 5]) -> Result<Vec<Vec<u32>>, Box<dyn Error>> {
+    let (mut detector, mut finder) = (Detector::default(), GroundFinder::default());
+    let (mut tracker, mut steady) = (Tracker::default(), Tracker::default());
     let mut ids = Vec::new();
     for VideoFrame { frame, pose, .. } in frames {
         detector.set_sensor(frame.sensor);
@@ -62,8 +63,11 @@ fn round(frames: &[VideoFrame], times: &mut [Vec<f64>; 4]) -> Result<Vec<Vec<u32
         times[2].push(milliseconds(start));
         ids.push(tracks.ids.clone());
         let start = Instant::now();
-        finder.find(frame.view()?, found, &frame.sensor)?;
+        steady.track_with_map(frame.view()?, found, &frame.sensor, pose.as_ref())?;
         times[3].push(milliseconds(start));
+        let start = Instant::now();
+        finder.find(frame.view()?, found, &frame.sensor)?;
+        times[4].push(milliseconds(start));
     }
     Ok(ids)
 }

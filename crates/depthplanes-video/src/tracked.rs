@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::frame::VideoFrame;
+use depthplanes::detection::PixelBox;
 use depthplanes::track::{TrackState, TrackedPlane, Tracks};
 use depthplanes::{Detection, Plane};
 use serde_json::{Value, json};
@@ -28,9 +29,10 @@ impl Tracked<'_> {
     /// The record of the frame, `depthplanes.track/1`: docs/video.md tells its fields.
     pub fn record(&self) -> Value {
         let (video, detection, tracks) = (self.video, self.detection, self.tracks);
-        let seen = detection.planes.iter().filter_map(|plane| {
+        let shown = shown(detection, tracks.labels_of(detection));
+        let seen = detection.planes.iter().zip(&shown).filter_map(|(plane, shown)| {
             let track = tracks.plane(tracks.id_of(plane.label)?)?;
-            Some(seen(plane, track))
+            Some(seen(plane, shown, track))
         });
         let hidden = |state: TrackState| tracks.planes.iter().filter(move |track| track.state == state).map(hidden);
         let mut record = json!({
@@ -52,7 +54,8 @@ impl Tracked<'_> {
         record
     }
 
-    /// The id of each pixel's plane, row by row; 0 where there is none.
+    /// The id of each pixel's plane, row by row; 0 where there is none. Borders do not flicker if the tracks were made so
+    /// ([`Tracks::labels`]).
     ///
     /// # Errors
     /// [`Error::Source`] for an id above 65535.
@@ -63,7 +66,7 @@ impl Tracked<'_> {
             Error::source(&self.video.name, wrong, "fewer frames; --out FILE.jsonl has all ids")
         })?;
         let id = |&label: &u16| usize::from(label).checked_sub(1).map_or(0, |at| ids[at]);
-        Ok(self.detection.labels.iter().map(id).collect())
+        Ok(self.tracks.labels_of(self.detection).iter().map(id).collect())
     }
 }
 
@@ -72,8 +75,38 @@ pub fn failed_record(index: u64, error: &str) -> Value {
     json!({"schema": SCHEMA, "index": index, "error": error})
 }
 
-fn seen(plane: &Plane, track: &TrackedPlane) -> Value {
-    let pixels = plane.bounding_box;
+/// Pixels of a plane in the label image that is shown.
+struct Shown {
+    pixels: usize,
+    bounds: PixelBox,
+    centroid: [f64; 2],
+}
+
+/// Those of all planes; of one that has no pixels there, where the detection has them.
+fn shown(found: &Detection, labels: &[u16]) -> Vec<Shown> {
+    const NONE: PixelBox = PixelBox { u_min: u32::MAX, v_min: u32::MAX, u_max: 0, v_max: 0 };
+    let mut all: Vec<Shown> =
+        found.planes.iter().map(|_| Shown { pixels: 0, bounds: NONE, centroid: [0.0; 2] }).collect();
+    for (row, v) in labels.chunks_exact(found.width.max(1)).zip(0..) {
+        for (&label, u) in row.iter().zip(0..).filter(|(label, _)| **label > 0) {
+            let Shown { pixels, bounds, centroid } = &mut all[usize::from(label) - 1];
+            let PixelBox { u_min, v_min, u_max, v_max } = *bounds;
+            *bounds = PixelBox { u_min: u_min.min(u), v_min: v_min.min(v), u_max: u_max.max(u), v_max: v_max.max(v) };
+            *centroid = [centroid[0] + f64::from(u), centroid[1] + f64::from(v)];
+            *pixels += 1;
+        }
+    }
+    for (shown, plane) in all.iter_mut().zip(&found.planes) {
+        match shown.pixels {
+            0 => (shown.bounds, shown.centroid) = (plane.bounding_box, plane.centroid),
+            pixels => shown.centroid = shown.centroid.map(|sum| sum / pixels as f64),
+        }
+    }
+    all
+}
+
+fn seen(plane: &Plane, shown: &Shown, track: &TrackedPlane) -> Value {
+    let pixels = shown.bounds;
     json!({
         "id": track.id,
         "label": plane.label,
@@ -81,9 +114,9 @@ fn seen(plane: &Plane, track: &TrackedPlane) -> Value {
         "age": track.age,
         "seen": track.seen,
         "split_from": track.split_from,
-        "pixel_count": plane.pixel_count,
+        "pixel_count": shown.pixels,
         "bounding_box": {"u_min": pixels.u_min, "v_min": pixels.v_min, "u_max": pixels.u_max, "v_max": pixels.v_max},
-        "centroid_px": plane.centroid,
+        "centroid_px": shown.centroid,
         "normal": track.plane.map(|plane| plane.normal),
         "distance_m": track.plane.map(|plane| plane.distance),
         "covariance": track.plane.map(|_| track.covariance),

@@ -225,7 +225,7 @@ fn later_tracks_allocate_nothing() {
         let (frame, pose) = &frames[number % frames.len()];
         let found = detector.detect(frame.view()).unwrap();
         let (calls, bytes) = allocated(|| {
-            ids += known.track(found, &frame.sensor, Some(pose)).unwrap().ids.len();
+            ids += known.track_with_map(frame.view(), found, &frame.sensor, Some(pose)).unwrap().ids.len();
             ids += estimated.track(found, &frame.sensor, None).unwrap().ids.len();
         });
         assert!(number < 60 || (calls, bytes) == (0, 0), "frame {number}: {calls} calls, {bytes} bytes");

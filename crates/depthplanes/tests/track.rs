@@ -144,10 +144,10 @@ fn identity(spec: &str, speed: f64, frames: u64, with_pose: bool) -> (Identity, 
         let pose: Option<CameraPose> = with_pose.then(|| walk.pose(index).unwrap());
         detector = detector.sensor(frame.sensor);
         let found = detector.detect(frame.view()).unwrap();
-        let tracks = tracker.track(found, &frame.sensor, pose.as_ref()).unwrap();
+        let tracks = tracker.track_with_map(frame.view(), found, &frame.sensor, pose.as_ref()).unwrap();
         let spots =
             walk.same_spots((index, &frame), before.as_ref().map_or((index, &frame), |frame| (index - 1, frame)));
-        let (surfaces, labels) = (&frame.truth.surfaces, &found.labels);
+        let (surfaces, labels) = (&frame.truth.surfaces, &tracks.labels);
         identity.add(&IdentityFrame { surfaces, before: &spots.unwrap(), labels, ids: &tracks.ids }).unwrap();
         all.push(tracks.clone());
         before = Some(frame);

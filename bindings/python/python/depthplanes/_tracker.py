@@ -42,8 +42,8 @@ class TrackedPlane(NamedTuple):
 class Tracks:
     """The planes that are followed, after a frame."""
 
-    def __init__(self, planes: Planes, ids: list[int], records: list[dict[str, Any]]) -> None:
-        self._planes = planes
+    def __init__(self, ids: list[int], records: list[dict[str, Any]], labels: npt.NDArray[np.uint16]) -> None:
+        self._labels = labels
         self.ids: npt.NDArray[np.uint32] = np.array(ids, dtype=np.uint32)
         """The id of each plane of the frame, (N,)."""
         self.planes: list[TrackedPlane] = [_tracked(record) for record in records]
@@ -51,9 +51,12 @@ class Tracks:
 
     @property
     def labels(self) -> npt.NDArray[np.uint32]:
-        """The id of each pixel's plane, (height, width); 0 where there is none."""
+        """The id of each pixel's plane, (height, width); 0 where there is none.
+
+        Its borders do not flicker: where planes meet, pixels that lie on both are of the one that they were of before.
+        """
         of_label = np.concatenate([np.zeros(1, np.uint32), self.ids])
-        labels: npt.NDArray[np.uint32] = of_label[self._planes.labels]
+        labels: npt.NDArray[np.uint32] = of_label[self._labels]
         return labels
 
     def __repr__(self) -> str:
@@ -90,8 +93,7 @@ class Tracker:
             Where the camera was, camera to world. Without it the motion is estimated from the planes.
         """
         place = None if pose is None else tuple(np.asarray(part, dtype=np.float64).tolist() for part in pose)
-        ids, records = self._native.track(planes._found, place)
-        return Tracks(planes, ids, records)
+        return Tracks(*self._native.track(planes._found, place))
 
 
 def _tracked(record: dict[str, Any]) -> TrackedPlane:

@@ -10,6 +10,7 @@ use super::output::{Output, Report, Writer};
 use super::picture::{Picture, blend};
 use super::{legend, lines, shade};
 use depthplanes::outline::Outlines;
+use depthplanes::track::Tracks;
 use depthplanes::{AnyView, Detection, Sensor};
 
 pub(super) const OUTPUT: Output = Output {
@@ -73,27 +74,27 @@ fn check_size(map: [usize; 2], found: &Detection) -> Result<(), OutputError> {
     if map == found { Ok(()) } else { Err(OutputError::Size { map, found }) }
 }
 
-/// The overlay of a frame of a video: each plane in the colour of its id, and the ids of the largest ones on them. `ids` has
-/// those of labels 1, 2, .. ([`depthplanes::track::Tracks::ids`]).
+/// The overlay of a frame of a video: each plane in the colour of its id, and the ids of the largest ones on them. `tracks` are
+/// those after the frame.
 ///
 /// # Errors
 /// [`OutputError::Size`] unless the detection is one of a map of that size.
 ///
 /// # Panics
-/// If there are fewer ids than planes.
+/// If the tracks have fewer ids than the detection has planes.
 pub fn tracked_png<'m>(
     map: impl Into<AnyView<'m>>,
     sensor: &Sensor,
     found: &Detection,
-    ids: &[u32],
+    tracks: &Tracks,
 ) -> Result<Vec<u8>, OutputError> {
     let map = map.into();
     check_size([map.width(), map.height()], found)?;
     let pixels = shade::greys(map, sensor.value_kind);
     let mut picture = Picture { width: found.width, height: found.height, pixels };
-    let palette: Vec<[u8; 3]> = [colour(0)].into_iter().chain(ids.iter().copied().map(id_colour)).collect();
-    tint_planes(&mut picture, found, &palette, true);
-    legend::number_planes(&mut picture, found, |label| ids[usize::from(label) - 1].to_string());
+    let palette: Vec<[u8; 3]> = [colour(0)].into_iter().chain(tracks.ids.iter().copied().map(id_colour)).collect();
+    tint_planes(&mut picture, tracks.labels_of(found), &palette, true);
+    legend::number_planes(&mut picture, found, |label| tracks.ids[usize::from(label) - 1].to_string());
     Ok(picture.png())
 }
 
@@ -115,7 +116,7 @@ fn tinted(map: AnyView<'_>, sensor: &Sensor, detection: &Detection, outlines: Op
 
 /// A picture and over it what was found.
 fn over(mut picture: Picture, detection: &Detection, outlines: Option<&Outlines>) -> Picture {
-    tint_planes(&mut picture, detection, &palette(detection.planes.len()), outlines.is_none());
+    tint_planes(&mut picture, &detection.labels, &palette(detection.planes.len()), outlines.is_none());
     if let Some(curved) = &detection.curved {
         hatch_curved(&mut picture, &curved.labels);
     }
@@ -149,28 +150,22 @@ fn hatch_curved(picture: &mut Picture, labels: &[u16]) {
 }
 
 /// `palette` has the colours of labels 0, 1, ..
-fn tint_planes(picture: &mut Picture, detection: &Detection, palette: &[[u8; 3]], borders: bool) {
-    for v in 0..detection.height {
-        for u in 0..detection.width {
-            let at = v * detection.width + u;
-            let label = detection.labels[at];
-            if label == 0 {
-                continue;
-            }
-            let tinted = blend(picture.pixels[at], palette[usize::from(label)], COLOUR_SHARE);
-            let outlined = borders && is_border(detection, u, v);
-            picture.pixels[at] = if outlined { blend([0; 3], tinted, OUTLINE_SHARE) } else { tinted };
-        }
+fn tint_planes(picture: &mut Picture, labels: &[u16], palette: &[[u8; 3]], borders: bool) {
+    for (at, &label) in labels.iter().enumerate().filter(|(_, label)| **label > 0) {
+        let tinted = blend(picture.pixels[at], palette[usize::from(label)], COLOUR_SHARE);
+        let outlined = borders && is_border(labels, picture.width, at);
+        picture.pixels[at] = if outlined { blend([0; 3], tinted, OUTLINE_SHARE) } else { tinted };
     }
 }
 
 /// Whether the pixel to the left or above carries another label: one pixel of outline between two
 /// planes, and one around a plane's left and upper side.
-fn is_border(detection: &Detection, u: usize, v: usize) -> bool {
-    let at = v * detection.width + u;
-    let label = detection.labels[at];
-    let differs = |other: usize| detection.labels[other] != label;
-    let ends_right = u + 1 < detection.width && detection.labels[at + 1] == 0;
-    let ends_below = v + 1 < detection.height && detection.labels[at + detection.width] == 0;
-    (u > 0 && differs(at - 1)) || (v > 0 && differs(at - detection.width)) || ends_right || ends_below
+fn is_border(labels: &[u16], width: usize, at: usize) -> bool {
+    let u = at % width;
+    let differs = |other: usize| labels[other] != labels[at];
+    let ends = |other: usize| labels.get(other).is_some_and(|&label| label == 0);
+    (u > 0 && differs(at - 1))
+        || (at >= width && differs(at - width))
+        || (u + 1 < width && ends(at + 1))
+        || ends(at + width)
 }

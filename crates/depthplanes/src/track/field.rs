@@ -1,7 +1,6 @@
 //! Where in the picture each track was last seen, on a lattice of pixels, and what is there now.
 
-use super::pose::Motion;
-use crate::camera::{HessianNormalForm, Intrinsics};
+use super::homography::Homography;
 use crate::detection::{Detection, PixelBox};
 use std::ops::Range;
 
@@ -64,23 +63,10 @@ impl Field {
         range.len() as u32 * pixels
     }
 
-    /// Moves the points of a track as the camera moved, each with the plane it is on: by the homography
-    /// K (R - t n^T / d) K^-1 of the plane n . X + d = 0 (Hartley and Zisserman, *Multiple View Geometry*, result 13.1).
-    pub(super) fn shift(&mut self, track: usize, motion: &Motion, plane: &HessianNormalForm, camera: &Intrinsics) {
-        let Motion { rotation, translation_m } = motion;
-        let rows: [[f32; 3]; 3] = std::array::from_fn(|i| {
-            let [a, b, c] = [0, 1, 2].map(|j| rotation[i][j] - translation_m[i] * plane.normal[j] / plane.distance);
-            // Of the pixel (u, v, 1) instead of the ray ((u - cx) / fx, (v - cy) / fy, 1).
-            let [a, b] = [a / camera.fx, b / camera.fy];
-            [a, b, c - a * camera.cx - b * camera.cy].map(|entry| entry as f32)
-        });
-        let [fx, fy, cx, cy] = [camera.fx, camera.fy, camera.cx, camera.cy].map(|number| number as f32);
+    /// Moves the points of a track.
+    pub(super) fn shift(&mut self, track: usize, homography: &Homography) {
         for point in &mut self.points[self.tracks[track].range.clone()] {
-            let [u, v] = *point;
-            let [x, y, z] = rows.map(|[a, b, c]| a * u + b * v + c);
-            let is_ahead = z > 0.0;
-            let moved = [fx * (x / z) + cx, fy * (y / z) + cy];
-            *point = if is_ahead { moved } else { [f32::NAN; 2] };
+            *point = homography.of(*point);
         }
     }
 

@@ -22,9 +22,11 @@
 //! is estimated from the planes. The answer depends on the frames alone: the same ones give the same ids.
 
 mod association;
+mod borders;
 mod egomotion;
 mod field;
 mod filter;
+mod homography;
 mod pose;
 mod tracked;
 
@@ -34,10 +36,13 @@ pub use tracked::{TrackState, TrackedPlane, Tracks};
 use crate::camera::Intrinsics;
 use crate::detection::Detection;
 use crate::error::{Error, Result};
+use crate::map::AnyView;
 use crate::sensor::Sensor;
 use association::Association;
+use borders::Borders;
 use field::Field;
 use filter::State;
+use homography::Homography;
 use pose::Motion;
 
 /// Frames for which a plane that is not seen is kept if nothing else is stated: a second of most cameras, in which a person
@@ -60,6 +65,7 @@ pub struct Tracker {
     former: Vec<Option<usize>>,
     field: Field,
     association: Association,
+    borders: Borders,
     tracks: Tracks,
 }
 
@@ -74,6 +80,7 @@ impl Default for Tracker {
             former: Vec::new(),
             field: Field::default(),
             association: Association::default(),
+            borders: Borders::default(),
             tracks: Tracks::default(),
         }
     }
@@ -99,6 +106,36 @@ impl Tracker {
     /// # Errors
     /// [`Error::Labels`] if the detection's labels are not `width * height` in number.
     pub fn track(&mut self, found: &Detection, sensor: &Sensor, pose: Option<&CameraPose>) -> Result<&Tracks> {
+        self.follow(found, sensor, pose)?;
+        self.borders.forget();
+        self.tracks.labels.clear();
+        Ok(&self.tracks)
+    }
+
+    /// As [`Tracker::track`], given the frame's map as well, by which it makes [`Tracks::labels`]: the label image whose
+    /// borders do not flicker.
+    ///
+    /// # Errors
+    /// As [`Tracker::track`], and [`Error::Labels`] if the map is not of the detection's size.
+    pub fn track_with_map<'m>(
+        &mut self,
+        map: impl Into<AnyView<'m>>,
+        found: &Detection,
+        sensor: &Sensor,
+        pose: Option<&CameraPose>,
+    ) -> Result<&Tracks> {
+        let map = map.into();
+        if [map.width(), map.height()] != [found.width, found.height] {
+            return Err(Error::Labels { given: found.labels.len(), pixels: map.width() * map.height() });
+        }
+        let motion = self.follow(found, sensor, pose)?;
+        let Tracks { ids, labels, .. } = &mut self.tracks;
+        self.borders.hold(map, found, sensor, &motion, ids, labels);
+        Ok(&self.tracks)
+    }
+
+    /// Brings all tracks to the next frame; returns how the camera moved.
+    fn follow(&mut self, found: &Detection, sensor: &Sensor, pose: Option<&CameraPose>) -> Result<Motion> {
         let pixels = found.width * found.height;
         if found.labels.len() != pixels {
             return Err(Error::Labels { given: found.labels.len(), pixels });
@@ -106,10 +143,11 @@ impl Tracker {
         if self.size != [found.width, found.height] {
             self.size = [found.width, found.height];
             self.field.forget();
+            self.borders.forget();
         }
         let known = self.pose.zip(pose).map(|(before, now)| before.motion_to(now));
         self.pose = pose.copied();
-        self.predict(found, sensor, known);
+        let motion = self.predict(found, sensor, known);
         self.association.assign(found, &self.field, &self.states, &self.tracks.planes);
         self.count_frames();
         self.name(found);
@@ -120,11 +158,11 @@ impl Tracker {
             |track| self.former[track],
         );
         self.filter(found);
-        Ok(&self.tracks)
+        Ok(motion)
     }
 
-    /// Where the planes are now if they have not moved, and which labels are there.
-    fn predict(&mut self, found: &Detection, sensor: &Sensor, known: Option<Motion>) {
+    /// Where the planes are now if they have not moved, and which labels are there; returns how the camera moved.
+    fn predict(&mut self, found: &Detection, sensor: &Sensor, known: Option<Motion>) -> Motion {
         let motion = known.unwrap_or_else(|| {
             self.field.overlaps(found, &mut self.association.overlaps);
             self.association.egomotion(found, &self.field, &self.states)
@@ -136,12 +174,13 @@ impl Tracker {
         if known.is_some() || motion != Motion::NONE {
             self.field.overlaps(found, &mut self.association.overlaps);
         }
+        motion
     }
 
     fn shift(&mut self, motion: &Motion, camera: &Intrinsics) {
         for (track, state) in self.states.iter().enumerate() {
             if let Some(state) = state {
-                self.field.shift(track, motion, &state.plane, camera);
+                self.field.shift(track, &Homography::new(motion, &state.plane, camera));
             }
         }
     }

@@ -121,6 +121,12 @@ impl Motion {
         Motion { rotation, translation_m }
     }
 
+    /// The motion back.
+    pub(super) fn inverse(&self) -> Motion {
+        let rotation: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| self.rotation[j][i]));
+        Motion { rotation, translation_m: rotation.map(|row| -dot(row, self.translation_m)) }
+    }
+
     /// A direction after the motion.
     pub(super) fn turned(&self, direction: [f64; 3]) -> [f64; 3] {
         self.rotation.map(|row| dot(row, direction))

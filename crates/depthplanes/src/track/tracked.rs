@@ -1,6 +1,7 @@
 //! What is known of a plane that is followed from frame to frame.
 
 use crate::camera::HessianNormalForm;
+use crate::detection::Detection;
 
 /// How a tracked plane stands in the newest frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,12 +84,21 @@ pub struct Tracks {
     pub planes: Vec<TrackedPlane>,
     /// The ids of this frame's labels: label 1 has the first.
     pub ids: Vec<u32>,
+    /// The frame's label image with borders that do not flicker: where planes meet, pixels that lie on both are of the one that
+    /// they were of before. Made by [`Tracker::track_with_map`](super::Tracker::track_with_map), otherwise empty. The planes of
+    /// the [`Detection`](crate::Detection) are those of its own label image.
+    pub labels: Vec<u16>,
 }
 
 impl Tracks {
     /// The id of a label of this frame; `None` for 0 and for a label that does not occur.
     pub fn id_of(&self, label: u16) -> Option<u32> {
         self.ids.get(usize::from(label).checked_sub(1)?).copied()
+    }
+
+    /// The label image to be shown: [`Tracks::labels`] if it was made, else the detection's own.
+    pub fn labels_of<'a>(&'a self, found: &'a Detection) -> &'a [u16] {
+        if self.labels.len() == found.labels.len() { &self.labels } else { &found.labels }
     }
 
     /// The plane of that id; `None` if it is not followed any more.

@@ -53,7 +53,8 @@ impl Follower {
         let Found { detection, ground } = found?;
         ground.iter().for_each(|ground| self.watch.look_at_ground(ground));
         video.pose = video.pose.filter(|_| !self.ignore_poses);
-        let tracks = self.tracker.track(&detection, &video.frame.sensor, video.pose.as_ref())?.clone();
+        let VideoFrame { frame, pose, .. } = &video;
+        let tracks = self.tracker.track_with_map(frame.view()?, &detection, &frame.sensor, pose.as_ref())?.clone();
         Ok(Followed { start, video, detection, tracks, ground, dropped })
     }
 }

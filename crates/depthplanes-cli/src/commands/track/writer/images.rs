@@ -50,7 +50,7 @@ impl Output for Overlays {
             Some(png) => outputs::write_file(&path, png)?,
             None => {
                 let (view, sensor) = (frame.video.frame.view()?, &frame.video.frame.sensor);
-                outputs::write_file(&path, &tracked_png(view, sensor, &frame.detection, &frame.tracks.ids)?)?;
+                outputs::write_file(&path, &tracked_png(view, sensor, &frame.detection, &frame.tracks)?)?;
             }
         }
         Ok(())
