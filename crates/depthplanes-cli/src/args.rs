@@ -14,6 +14,7 @@ mod tips;
 mod track;
 
 use crate::failure::{Failure, exit_code};
+use crate::shard::Shard;
 use crate::terminal::plain;
 use clap::{Arg, ArgMatches, builder::PossibleValuesParser, value_parser};
 use depthplanes::methods::{self, METHODS, MethodInfo};
@@ -68,6 +69,10 @@ pub(crate) struct Detect {
     pub(crate) only: Vec<&'static Output>,
     /// One file for the planes of all inputs.
     pub(crate) table: Option<PathBuf>,
+    /// The part of the inputs that is worked on.
+    pub(crate) shard: Option<Shard>,
+    /// Whether what an earlier run did is not done again.
+    pub(crate) resume: bool,
     pub(crate) legend: bool,
     /// Angle in degrees and distance in metres within which coplanar planes are joined, if that is wanted.
     pub(crate) merge_coplanar: Option<[f64; 2]>,
@@ -362,6 +367,8 @@ fn detect(matches: &ArgMatches) -> Detect {
         out_dir: path_given(matches, "out-dir"),
         only: only(matches),
         table: path_given(matches, "table"),
+        shard: matches.get_one("shard").copied(),
+        resume: matches.get_flag("resume"),
         legend: matches.get_flag("legend"),
         merge_coplanar: matches.get_one("merge-coplanar").copied(),
         outlines: matches.get_one("outlines").copied(),

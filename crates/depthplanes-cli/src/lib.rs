@@ -13,6 +13,7 @@ mod patience;
 mod pool;
 mod run;
 mod runners;
+mod shard;
 mod show;
 mod signals;
 mod table;

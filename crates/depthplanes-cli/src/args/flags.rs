@@ -1,6 +1,7 @@
 //! Flags that several commands share, and those that come from the libraries' tables.
 
 use super::help;
+use crate::shard::Shard;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
@@ -302,6 +303,15 @@ pub(super) fn count(id: &'static str, value: &'static str) -> Arg {
         Ok(number) if (1..=MOST).contains(&number) => Ok(number),
         _ => Err(format!("accepted: a whole number from 1 to {MOST}")),
     })
+}
+
+/// A part of the inputs.
+pub(super) fn shard() -> Arg {
+    Arg::new("shard")
+        .long("shard")
+        .value_name("I/N")
+        .value_parser(|text: &str| text.parse::<Shard>())
+        .help("Work on the Ith of N parts of the inputs, for N runs on as many machines")
 }
 
 /// A flag that takes a number of pixels, from 0.

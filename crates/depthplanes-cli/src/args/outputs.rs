@@ -24,9 +24,9 @@ pub(super) fn output_flags() -> Vec<Arg> {
         only.hide_possible_values(true).help("With --out-dir: write only these, such as `overlay,planes`").long_help(
             format!("With --out-dir: write only these; names are {}", output_names()),
         ),
-        flags::path("table", "FILE").help("Write the planes of all inputs into one file (.csv or .jsonl)").long_help(
-            "Write the planes of all inputs into one file: .csv has a row for each plane, .jsonl a line for each input. \
-             Inputs that fail are left out and named",
+        flags::path("table", "FILE").help("Write the planes of all inputs into one file (.csv, .jsonl or .parquet)").long_help(
+            "Write the planes of all inputs into one file: .csv and .parquet have a row for each plane, .jsonl a line for each \
+             input. Inputs that fail are left out and named",
         ),
         flags::switch("legend", "Put a legend beside the overlay and numbers on its planes"),
         flags::switch(
@@ -78,6 +78,13 @@ fn outlines_flag() -> Arg {
 pub(super) fn running_flags() -> Vec<Arg> {
     let all = [
         flags::count("jobs", "N").default_value("1").help("Inputs worked on at the same time"),
+        flags::shard(),
+        flags::switch("resume", "Go on where an earlier run of these words ended, by the manifest in --out-dir")
+            .requires("out-dir")
+            .long_help(
+                "Go on where an earlier run of these words ended: inputs that are done are left out, those that failed are \
+                 tried again. --out-dir has the manifest, a line for each input, manifest.jsonl or manifest.I-of-N.jsonl",
+            ),
         flags::count("threads", "N").default_value("1").help("Threads for each map; the answer does not depend on it"),
         flags::count("repeat", "N").help("Measure the detection alone, N times after a warm-up; truest with one job"),
     ];

@@ -1,16 +1,18 @@
 //! `depthplanes detect`: maps in, planes out as a table, as JSON or as files.
 
 mod done;
+mod manifest;
 mod table;
 mod tally;
 mod targets;
 
 use crate::args::Detect;
-use crate::failure::Outcome;
+use crate::failure::{Outcome, note};
 use crate::folders::make_folder;
 use crate::inputs::{self, Input};
 use crate::run::Recipe;
 use crate::runners::Runners;
+use crate::shard::Shard;
 use crate::terminal::plain;
 use crate::{load, pool, show};
 use depthplanes::noise::SensorNoise;
@@ -18,6 +20,9 @@ use depthplanes_io::outputs::{self, OUTPUTS, Output, Report, TableForm};
 use depthplanes_io::{ReadOptions, doubts, memory};
 use done::Done;
 use indicatif::{ProgressBar, ProgressStyle};
+use manifest::Manifest;
+use serde_json::json;
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use table::Table;
@@ -68,28 +73,38 @@ fn run_to(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     let needs_curved =
         wanted.outputs.iter().map(|(output, _)| output).chain(&wanted.only).any(|output| output.needs_curved);
     let recipe = recipe.curved(wanted.curved || needs_curved)?;
-    let inputs = inputs::expand(&wanted.inputs.words, wanted.inputs.recursive)?;
+    let all = inputs::expand(&wanted.inputs.words, wanted.inputs.recursive)?;
+    let alone = all.len() == 1;
+    let inputs = match wanted.shard {
+        Some(shard) => part(shard, all),
+        None => all,
+    };
     check_outputs(wanted, &inputs)?;
     let mut options = load::options(&wanted.reading)?;
     options.noise = load::noise_table(wanted.noise_table.as_deref())?.map(SensorNoise::Table);
     let form = wanted.table.as_deref().map(TableForm::of).transpose()?;
     let files = wanted.outputs.iter().filter(|(_, path)| !is_standard_output(path)).cloned().collect();
-    let plan = Plan { wanted, files, recipe: &recipe, options, form, alone: inputs.len() == 1 };
+    let manifest = manifest_of(wanted, &recipe, form)?;
+    let due = due(&inputs, manifest.as_ref())?;
+    let plan = Plan { wanted, files, recipe: &recipe, options, form, alone };
     let mut table = Table::begin(wanted, form)?;
-    let bar = progress(inputs.len());
+    let bar = progress(due.len());
     let (mut tally, mut hint) = (Tally::default(), String::new());
     let runners = Runners::new(&recipe);
     let work = || {
-        let (plan, inputs, runners) = (&plan, &inputs, &runners);
+        let (plan, due, runners, manifest) = (&plan, &due, &runners, manifest.as_ref());
         move |at: usize| {
-            let input = &inputs[at];
-            plan.process(runners, input).map_err(|failure| failure.of_input(&input.name()))
+            let input = due[at];
+            let outcome = plan.process(runners, input).map_err(|failure| failure.of_input(&input.name()));
+            manifest.map_or(Ok(()), |manifest| manifest.add(input, &outcome)).and(outcome)
         }
     };
-    pool::in_order(inputs.len(), wanted.jobs, work, |_, done| {
+    pool::in_order(due.len(), wanted.jobs, work, |_, done| {
         bar.inc(1);
         bar.suspend(|| {
-            table.add(&done)?;
+            if let (Ok(done), None) = (&done, &manifest) {
+                table.add(&done.rows, done.planes)?;
+            }
             if let Ok(Done { hint: said, .. }) = &done
                 && hint.is_empty()
             {
@@ -99,11 +114,61 @@ fn run_to(wanted: &Detect, out: &mut dyn Write) -> Outcome {
         })
     })?;
     bar.finish_and_clear();
+    if let Some(manifest) = &manifest {
+        table.add_all(&inputs, manifest)?;
+    }
     if let Some(line) = table.finish()?.filter(|_| !wanted.json) {
         writeln!(out, "{line}")?;
     }
     out.write_all(hint.as_bytes())?;
-    tally.outcome(inputs.len())
+    tally.outcome(due.len())
+}
+
+/// The part of the inputs that this run works on, which is empty where there are fewer inputs than parts.
+fn part(shard: Shard, inputs: Vec<Input>) -> Vec<Input> {
+    let count = inputs.len();
+    let part = shard.of(inputs);
+    if part.is_empty() {
+        note(&format!("--shard {shard}: there are {count} inputs, and none for this part"));
+    }
+    part
+}
+
+/// The manifest, if a run is to go on.
+fn manifest_of(wanted: &Detect, recipe: &Recipe, form: Option<TableForm>) -> Outcome<Option<Manifest>> {
+    let Some(folder) = wanted.out_dir.as_ref().filter(|_| wanted.resume) else { return Ok(None) };
+    make_folder(folder)?;
+    let params = recipe.method.params.iter().map(|param| param.name);
+    let settings = json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "method": recipe.method.name,
+        "parameters": params.zip(&recipe.values).collect::<BTreeMap<_, _>>(),
+        "reading": wanted.reading.words,
+        "noise-table": wanted.noise_table,
+        "merge-coplanar": wanted.merge_coplanar,
+        "outlines": wanted.outlines,
+        "min-hole": wanted.min_hole,
+        "curved": wanted.curved,
+        "legend": wanted.legend,
+        "only": wanted.only.iter().map(|output| output.name).collect::<Vec<_>>(),
+        "table": form.map(|form| form.name()),
+    });
+    Manifest::open(folder, wanted.shard, &settings).map(Some)
+}
+
+/// The inputs that are to be worked on.
+fn due<'a>(inputs: &'a [Input], manifest: Option<&Manifest>) -> Outcome<Vec<&'a Input>> {
+    let Some(manifest) = manifest else { return Ok(inputs.iter().collect()) };
+    let mut due = Vec::new();
+    for input in inputs {
+        if !manifest.is_done(input)? {
+            due.push(input);
+        }
+    }
+    if due.len() < inputs.len() {
+        note(&format!("--resume: {} of {} inputs are done already", inputs.len() - due.len(), inputs.len()));
+    }
+    Ok(due)
 }
 
 /// What is done with each input.
@@ -144,14 +209,15 @@ impl Plan<'_> {
         let told = frame.warnings.iter().chain(&doubts);
         let mut notes: Vec<String> = told.map(|warning| format!("{name}: {warning}")).collect();
         let text = if self.wanted.json {
-            json(&report, self.alone)
+            json_text(&report, self.alone)
         } else {
             notes.extend(show::advice(&report));
             self.readable(&report, &written, bytes.is_some())
         };
         let rows = self.form.map(|form| form.rows(&report)).unwrap_or_default();
+        let written = written.into_iter().map(|(_, path)| path).collect();
         let hint = if self.alone || self.wanted.json { String::new() } else { self.camera_hint(&report) };
-        Ok(Done { text, notes, bytes, rows, planes: report.detection.planes.len(), hint })
+        Ok(Done { text, notes, bytes, rows, written, planes: report.detection.planes.len(), hint })
     }
 
     /// Writes the outputs that are wanted of an input; says which.
@@ -203,7 +269,7 @@ impl Plan<'_> {
     }
 }
 
-fn json(report: &Report<'_>, alone: bool) -> String {
+fn json_text(report: &Report<'_>, alone: bool) -> String {
     if alone { outputs::json_document(report) } else { outputs::json_line(report) + "\n" }
 }
 

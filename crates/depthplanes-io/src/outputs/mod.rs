@@ -28,6 +28,8 @@ mod npy;
 mod outline;
 mod output;
 mod overlay;
+#[cfg(feature = "parquet")]
+mod parquet;
 mod picture;
 mod planes;
 mod record;

@@ -89,6 +89,18 @@ pub(super) fn csv_rows(report: &Report<'_>) -> String {
     text
 }
 
+/// A line for each plane with the same as an array of JSON, null where a number is not known.
+#[cfg(feature = "parquet")]
+pub(super) fn array_rows(report: &Report<'_>) -> String {
+    let mut text = String::new();
+    for plane in &report.detection.planes {
+        let row: Vec<Value> =
+            std::iter::once(report.source.into()).chain(numbers(plane).into_iter().map(Value::from)).collect();
+        let _ = writeln!(text, "{}", Value::Array(row));
+    }
+    text
+}
+
 /// All columns after the source.
 fn numbers(plane: &Plane) -> Vec<Option<f64>> {
     let pixels = plane.bounding_box;

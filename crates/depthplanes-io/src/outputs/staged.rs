@@ -56,6 +56,11 @@ impl Staged {
         }
     }
 
+    /// The name that it will have.
+    pub(super) fn target(&self) -> &Path {
+        &self.target
+    }
+
     /// Adds bytes.
     pub(super) fn write(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
         self.file.write_all(bytes).map_err(|source| OutputError::Write { path: self.target.clone(), source })
@@ -87,6 +92,16 @@ impl Staged {
             self.hidden = None;
         }
         Ok(())
+    }
+}
+
+impl Write for Staged {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
     }
 }
 

@@ -1,5 +1,7 @@
 //! What one input of `detect` came to.
 
+use std::path::PathBuf;
+
 /// What one input came to.
 pub(super) struct Done {
     pub(super) text: String,
@@ -8,6 +10,8 @@ pub(super) struct Done {
     pub(super) bytes: Option<Vec<u8>>,
     /// What it adds to the table of all inputs.
     pub(super) rows: String,
+    /// The files that were written.
+    pub(super) written: Vec<PathBuf>,
     pub(super) planes: usize,
     /// What a camera would add; said once for many inputs.
     pub(super) hint: String,

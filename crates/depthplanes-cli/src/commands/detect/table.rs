@@ -1,8 +1,9 @@
 //! One table of the planes of all inputs.
 
-use super::done::Done;
+use super::manifest::Manifest;
 use crate::args::Detect;
 use crate::failure::Outcome;
+use crate::inputs::Input;
 use depthplanes_io::outputs::{TableFile, TableForm};
 use std::path::Path;
 
@@ -20,11 +21,25 @@ impl<'a> Table<'a> {
         Ok(Table { file: Some((form.begin(path)?, path)), ..Table::default() })
     }
 
-    pub(super) fn add(&mut self, done: &Outcome<Done>) -> Outcome {
-        if let (Some((file, _)), Ok(done)) = (&mut self.file, done) {
-            file.add(&done.rows)?;
-            self.planes += done.planes;
+    /// Adds the rows of an input, of so many planes.
+    pub(super) fn add(&mut self, rows: &str, planes: usize) -> Outcome {
+        if let Some((file, _)) = &mut self.file {
+            file.add(rows)?;
+            self.planes += planes;
             self.inputs += 1;
+        }
+        Ok(())
+    }
+
+    /// Adds all inputs that are done, by whichever run.
+    pub(super) fn add_all(&mut self, inputs: &[Input], manifest: &Manifest) -> Outcome {
+        if self.file.is_none() {
+            return Ok(());
+        }
+        for input in inputs {
+            if let Some((rows, planes)) = manifest.rows(input)? {
+                self.add(&rows, planes)?;
+            }
         }
         Ok(())
     }
