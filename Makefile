@@ -74,13 +74,13 @@ format:
 clippy:
 	$(call say,lints)
 	@if scripts/component clippy; then \
-		$(CARGO) clippy --workspace --all-targets --features depthplanes/serde,depthplanes-io/exr -- -D warnings; \
+		$(CARGO) clippy --workspace --all-targets --features depthplanes/serde,depthplanes-io/exr,depthplanes-cli/parquet -- -D warnings; \
 		$(CARGO) clippy --package depthplanes --no-default-features -- -D warnings; \
 		$(CARGO) clippy $(WASM) --target-dir "$${CARGO_TARGET_DIR:-target}" --locked -- -D warnings; fi
 
 rust-tests:
 	$(call say,tests)
-	$(CARGO) test --workspace --features depthplanes/serde
+	$(CARGO) test --workspace --features depthplanes/serde,depthplanes-cli/parquet
 	$(call say,tests of the library without threads)
 	$(CARGO) test --package depthplanes --no-default-features --test grouping --test detection --test planar --test allocations
 	$(call say,tests of the readers with OpenEXR)
