@@ -275,10 +275,8 @@ pub unsafe extern "C" fn dp_detector_set_camera_file(
 #[unsafe(no_mangle)]
 pub extern "C" fn dp_detector_set_valid_range(detector: Option<&mut dp_detector>, low: f64, high: f64) -> dp_status {
     state(detector, |settings| {
-        if !(low < high) {
-            return Err(depthplanes::Error::ValidRange { low, high }.into());
-        }
-        settings.reading.valid_range = Some((low, high));
+        let range = (low < high).then_some((low, high)).ok_or(depthplanes::Error::ValidRange { low, high })?;
+        settings.reading.valid_range = Some(range);
         Ok(())
     })
 }

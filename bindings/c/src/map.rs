@@ -105,7 +105,7 @@ impl<'m> Pixels<'m> {
 
     fn typed<T: Pixel>(&self) -> Option<depthplanes::Result<AnyView<'m>>> {
         let (start, (width, height)) = (self.map.pixels.cast::<T>(), self.size());
-        if !start.is_aligned() || self.stride_bytes % self.pixel_bytes != 0 {
+        if !start.is_aligned() || !self.stride_bytes.is_multiple_of(self.pixel_bytes) {
             return None;
         }
         let stride = self.stride_bytes / self.pixel_bytes;

@@ -47,7 +47,7 @@ def settings(flags):
 
 def labels_of(built, writer, raw, sizes, method, stated, folder):
     out = folder / "labels.raw"
-    run(built / "plain" / writer, sizes[0], sizes[1], sizes[2], raw, out, method, *stated)
+    run(built / "plain" / writer, *sizes, raw, out, method, *stated)
     return np.fromfile(out, np.uint16).reshape(sizes[2], sizes[1])
 
 
@@ -88,16 +88,26 @@ def test_programs_end_well(built, tmp_path, build, name):
     assert said == SAYS.get(name, said)
 
 
-@pytest.mark.parametrize("name", ["errors", "wrapper", "detect"])
+#: What valgrind is to look for. Its numbers are not those of the processor: of AVX2 it works out NaN where there is none, and
+#: `planar` then finds nothing. So it runs what does not rest on planes of `planar`.
+VALGRIND = ["valgrind", "--quiet", "--leak-check=full", "--errors-for-leak-kinds=definite,indirect", "--error-exitcode=9"]
+
+
+@pytest.mark.parametrize("name", ["errors", "detect"])
 def test_valgrind_finds_nothing(built, tmp_path, name):
-    words = ["--quiet", "--leak-check=full", "--errors-for-leak-kinds=definite,indirect", "--error-exitcode=9"]
-    run("valgrind", *words, built / "plain" / name, cwd=tmp_path)
+    run(*VALGRIND, built / "plain" / name, cwd=tmp_path)
+
+
+@pytest.mark.parametrize("method", ["planar", "ngaf"])
+def test_valgrind_finds_nothing_with_a_recorded_frame(built, frames, tmp_path, method):
+    _, raw, sizes, flags = frames[0]
+    run(*VALGRIND, built / "plain" / "labels", *sizes, raw, tmp_path / "labels", method, *settings(flags))
 
 
 def test_recorded_frames_are_searched_without_a_wrong_access(built, frames, tmp_path):
     _, raw, sizes, flags = frames[0]
     for method in METHODS:
-        run(built / "sanitized" / "labels", *sizes[:1], *sizes[1:], raw, tmp_path / "out", method, *settings(flags))
+        run(built / "sanitized" / "labels", *sizes, raw, tmp_path / "out", method, *settings(flags))
 
 
 def test_a_leak_and_a_wrong_access_would_be_found(built, tmp_path):
