@@ -77,27 +77,31 @@ impl dp_detector {
 
     /// Writes what is found to a detection that was emptied; the memory of `spare` is used for it.
     fn detect(&mut self, map: &dp_map, detection: &mut dp_detection, spare: Detection) -> Result<()> {
-        let read = self.read(&map.checked()?)?;
+        let map = map.checked()?;
+        let read = self.read(&map)?;
         let sensor = read.sensor();
         let mut finder = self.finder(sensor)?;
         finder.detect(read.view()?)?;
         let found = finder.exchange(spare);
         self.idle = Some(finder);
         let notes = match &read {
-            Read::Copied { frame, is_first: true } => self.notes(frame, &found),
-            _ => String::new(),
+            Read::Copied(frame) => self.notes(&map, frame, &found)?,
+            Read::InPlace(..) => String::new(),
         };
         let outlines = self.outliner.as_mut().map(|outliner| outliner.outline_seen_by(&found, &sensor)).transpose()?;
         detection.fill(found, sensor, outlines, &notes);
         Ok(())
     }
 
-    /// What a person should know of a frame and of what was found in it.
-    fn notes(&self, frame: &Frame, found: &Detection) -> String {
+    /// What a person should know of a map and of what was found in it, if it is the first of its size and type.
+    fn notes(&mut self, map: &Pixels<'_>, frame: &Frame, found: &Detection) -> Result<String> {
+        if !self.reader.as_mut().map_or(Ok(false), |reader| reader.remember(map, frame))? {
+            return Ok(String::new());
+        }
         let Settings { method, values, coplanar, .. } = &self.settings;
         let report = Report { coplanar: *coplanar, ..Report::new("map", frame, method, values, found) };
         let notes: Vec<String> = frame.warnings.iter().cloned().chain(doubts(&report)).collect();
-        notes.join("\n")
+        Ok(notes.join("\n"))
     }
 
     fn points(

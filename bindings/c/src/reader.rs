@@ -16,8 +16,8 @@ pub(crate) struct Reader {
 pub(crate) enum Read<'m> {
     /// Where it lies.
     InPlace(AnyView<'m>, Arc<Settled>),
-    /// A copy, and whether it is the first of its size and type.
-    Copied { frame: Box<Frame>, is_first: bool },
+    /// A copy.
+    Copied(Box<Frame>),
 }
 
 impl Reader {
@@ -25,21 +25,26 @@ impl Reader {
         Reader { options, maps: SettledMaps::default() }
     }
 
-    /// Reads a map: the first of its size and type as files are, later ones where they lie.
+    /// Reads a map: as files are until one of its size and type is remembered, then where it lies.
     ///
     /// # Errors
     /// Those of the readers of files.
-    pub(crate) fn read<'m>(&mut self, map: &Pixels<'m>) -> Result<Read<'m>> {
-        let view = map.in_place().transpose()?;
-        if let Some(view) = view
+    pub(crate) fn read<'m>(&self, map: &Pixels<'m>) -> Result<Read<'m>> {
+        if let Some(view) = map.in_place().transpose()?
             && let Some(settled) = self.maps.of(&view)
         {
             return Ok(Read::InPlace(view, settled));
         }
         let sample = if cfg!(target_endian = "big") { format!("{}-be", map.sample) } else { map.sample.to_string() };
-        let frame = Box::new(frame_of_samples(&map.bytes(), &sample, map.size(), &self.options)?);
-        let is_first = self.maps.add(&frame, view.as_ref(), &self.options);
-        Ok(Read::Copied { frame, is_first })
+        Ok(Read::Copied(Box::new(frame_of_samples(&map.bytes(), &sample, map.size(), &self.options)?)))
+    }
+
+    /// Remembers what is settled of a map that was read as a copy. Whether it is the first of its size and type.
+    ///
+    /// # Errors
+    /// A map that is none.
+    pub(crate) fn remember(&mut self, map: &Pixels<'_>, frame: &Frame) -> Result<bool> {
+        Ok(self.maps.add(frame, map.in_place().transpose()?.as_ref(), &self.options))
     }
 }
 
@@ -51,7 +56,7 @@ impl Read<'_> {
     pub(crate) fn view(&self) -> depthplanes::Result<AnyView<'_>> {
         match self {
             Read::InPlace(view, settled) => settled.view(*view),
-            Read::Copied { frame, .. } => frame.view(),
+            Read::Copied(frame) => frame.view(),
         }
     }
 
@@ -59,7 +64,7 @@ impl Read<'_> {
     pub(crate) fn sensor(&self) -> Sensor {
         match self {
             Read::InPlace(_, settled) => settled.sensor(),
-            Read::Copied { frame, .. } => frame.sensor,
+            Read::Copied(frame) => frame.sensor,
         }
     }
 }

@@ -124,6 +124,7 @@ void notes_say_what_looks_wrong() {
     std::vector<float> millimetres(SIZE, 2000.0f);
     auto finder = detector();
     depthplanes::Detection found;
+    CHECK(!finder.explain({millimetres.data(), WIDTH, HEIGHT}, 0, 0).empty()); // it is not said there
     finder.detect({millimetres.data(), WIDTH, HEIGHT}, found);
     CHECK(std::string_view(found.notes()).find("--encoding") != std::string_view::npos);
     finder.detect({millimetres.data(), WIDTH, HEIGHT}, found);
