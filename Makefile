@@ -27,6 +27,8 @@ METHODS ?= planar,ngaf,ransac,ppdfdm,fpdidm,hough,normals,mdl,gradient
 # Random maps that `make stress` makes, and the seed of the first.
 RUNS ?= 100000
 SEED ?= 1
+# Where `make install-c` installs.
+PREFIX ?= /usr/local
 # Name of this machine's folder of benchmark records.
 MACHINE ?= $(shell scripts/machine)
 
@@ -41,7 +43,7 @@ WASM := --manifest-path tests/wasm/Cargo.toml
 say = @printf '\n== %s\n' '$(1)'
 
 .NOTPARALLEL:
-.PHONY: help demo dist try-deb deny test lint fmt format clippy rust-tests rustdoc packages package targets browser oracles python wheel bench bench-planar bench-track ablate tables peers results golden stress fuzz clean
+.PHONY: help demo dist try-deb deny test lint fmt format clippy rust-tests rustdoc packages package targets browser oracles python wheel c install-c bench bench-planar bench-track ablate tables peers results golden stress fuzz clean
 
 help: ## List the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -61,7 +63,7 @@ deny: ## Check licences, sources and advisories of all dependencies
 
 # Two at a time, which does not show the figures that `make oracles` prints.
 test: ORACLE_FLAGS = --numprocesses 2
-test: lint rust-tests rustdoc packages targets browser oracles python ## Run every check: formatting, lints, all tests, documentation, packages, other targets, the page in a browser, Python oracles, the Python package
+test: lint rust-tests rustdoc packages targets browser oracles python c ## Run every check: formatting, lints, all tests, documentation, packages, other targets, the page in a browser, Python oracles, the Python package, the C library
 	$(call say,all checks passed)
 
 lint: format clippy ## Check formatting and lints, change nothing
@@ -119,6 +121,14 @@ python: ## Build the Python package, install it with NumPy alone, and run its te
 
 wheel: ## Make the Python package for others into dist: wheels for Linux, and the sources
 	@scripts/wheel '$(PYTHON)'
+
+c: $(VENV) ## Build the C library, install it into a folder, and run the examples and tests there
+	$(call say,the C library)
+	@scripts/c $(PY)
+
+install-c: ## Install the C library with its headers below PREFIX (/usr/local)
+	$(CARGO) build --release --package depthplanes-c
+	@scripts/install-c '$(PREFIX)'
 
 bench: $(VENV) ## Measure against cc3d and OpenCV; writes benchmarks/record/MACHINE/DATE.csv
 	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes --examples

@@ -8,7 +8,7 @@ use crate::pool::{Lent, Pool};
 use crate::reading::Reading;
 use crate::recipe::Recipe;
 use depthplanes::AnyView;
-use depthplanes_io::{Frame as Pixels, ReadOptions, Settled, memory};
+use depthplanes_io::{Frame as Pixels, ReadOptions, Settled, SettledMaps, memory};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -25,28 +25,9 @@ pub(crate) struct Detector {
 /// What is known since the first maps.
 #[derive(Default)]
 struct Known {
-    /// Of maps of each size and type, the last one last: what is settled, if anything is.
-    kinds: Vec<(Kind, Option<Arc<Settled>>)>,
+    maps: SettledMaps,
     /// Bytes that there was memory for.
     memory: [u64; 2],
-}
-
-/// Most sizes and types of a camera's maps that are remembered: a camera has few.
-const MOST_KINDS: usize = 8;
-
-/// Size and type of a map.
-#[derive(Clone, Copy, PartialEq)]
-struct Kind(usize, usize, u8);
-
-impl Kind {
-    fn of(map: &AnyView<'_>) -> Self {
-        let kind = match map {
-            AnyView::U8(_) => 1,
-            AnyView::U16(_) => 2,
-            AnyView::F32(_) => 4,
-        };
-        Kind(map.width(), map.height(), kind)
-    }
 }
 
 #[pymethods]
@@ -70,7 +51,7 @@ impl Detector {
     fn detect(&self, py: Python<'_>, array: &Bound<'_, PyAny>) -> Result<(Found, bool)> {
         let (array, map) = borrow(array)?;
         if let Some(view) = map.pixels().transpose()?
-            && let Some(settled) = self.settled(Kind::of(&view))
+            && let Some(settled) = self.settled(&view)
         {
             let (lent, mark) = py.detach(|| {
                 let lent = self.pool.detect(|| settled.view(view), settled.sensor())?;
@@ -102,9 +83,9 @@ impl Detector {
 }
 
 impl Detector {
-    /// What is known of maps of that kind.
-    fn settled(&self, kind: Kind) -> Option<Arc<Settled>> {
-        self.known().kinds.iter().find(|(known, _)| *known == kind)?.1.clone()
+    /// What is settled of maps like this one.
+    fn settled(&self, map: &AnyView<'_>) -> Option<Arc<Settled>> {
+        self.known().maps.of(map)
     }
 
     /// The planes of a map that is read as a file is: the first of its size and type, or one whose numbers are converted.
@@ -112,16 +93,7 @@ impl Detector {
         let frame = Arc::new(map.frame(py, &self.options)?);
         let view = map.pixels().transpose()?;
         let lent = py.detach(|| self.find(&frame))?;
-        let kind = view.map_or(Kind(frame.width, frame.height, 0), |view| Kind::of(&view));
-        let is_first = {
-            let mut known = self.known();
-            let is_first = !known.kinds.iter().any(|(known, _)| *known == kind);
-            if is_first {
-                known.kinds.truncate(MOST_KINDS - 1);
-                known.kinds.insert(0, (kind, view.and_then(|_| Settled::of(&frame, &self.options)).map(Arc::new)));
-            }
-            is_first
-        };
+        let is_first = self.known().maps.add(&frame, view.as_ref(), &self.options);
         Ok((Found::new(lent, Map::Frame(frame.clone()), frame.sensor, "array"), is_first))
     }
 

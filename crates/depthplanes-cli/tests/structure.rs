@@ -90,6 +90,8 @@ fn unsafe_code_stands_in_the_kernels_alone() {
     assert_eq!(files_with("crates/depthplanes-ros2/src", &["unsafe "]), [""; 0]);
     assert_eq!(files_with("crates/depthplanes-rerun/src", &["unsafe "]), [""; 0]);
     assert_eq!(files_with("bindings/python/src", &["unsafe "]), ["array.rs"]); // memory that NumPy and Rust share
+    let border = ["border.rs", "detector.rs", "map.rs", "tables.rs"]; // texts, pixels and arrays of C
+    assert_eq!(files_with("bindings/c/src", &["unsafe "]), border);
 }
 
 #[test]
@@ -103,7 +105,7 @@ fn the_argument_parser_is_known_to_one_module() {
 
 #[test]
 fn the_tests_that_the_architecture_names_exist() {
-    let tests: String = sources("crates").into_iter().map(|(_, text)| text).collect();
+    let tests: String = ["crates", "bindings"].into_iter().flat_map(sources).map(|(_, text)| text).collect();
     let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
     let mut named = 0;
     for line in text.lines().filter(|line| line.starts_with('|')) {
@@ -126,6 +128,7 @@ fn nobody_but_tests_and_benchmarks_asks_for_stages_by_themselves() {
         "crates/depthplanes-ros2",
         "crates/depthplanes-rerun",
         "bindings/python",
+        "bindings/c",
     ] {
         let folder = &format!("{krate}/src");
         assert_eq!(files_with(folder, &["::internals"]), [""; 0], "{folder}");

@@ -3,6 +3,8 @@
 //! In: samples, row by row, and what the user states. Out: a [`Frame`], as of a file. What of its reading rests on size, type
 //! and the user's words alone is [`Settled`], so that later maps of the camera are read where they lie, without a copy.
 
+use std::sync::Arc;
+
 use depthplanes::{AnyView, Sensor, ValueKind};
 
 use crate::choice::{IN_MEMORY, rests_on_values};
@@ -80,6 +82,50 @@ impl Settled {
     }
 }
 
+/// What is settled of the maps of one camera, by their size and type.
+#[derive(Clone, Debug, Default)]
+pub struct SettledMaps {
+    /// The last one first: what is settled, if anything is.
+    kinds: Vec<(Kind, Option<Arc<Settled>>)>,
+}
+
+/// Most sizes and types of a camera's maps that are remembered: a camera has few.
+const MOST_KINDS: usize = 8;
+
+/// Columns, rows, and bytes of a pixel; 0 of one whose numbers are converted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Kind(usize, usize, u8);
+
+impl Kind {
+    fn of(map: &AnyView<'_>) -> Self {
+        let bytes = match map {
+            AnyView::U8(_) => 1,
+            AnyView::U16(_) => 2,
+            AnyView::F32(_) => 4,
+        };
+        Kind(map.width(), map.height(), bytes)
+    }
+}
+
+impl SettledMaps {
+    /// What is settled of maps of that size and type; `None` of the first, and if each of them is read anew.
+    pub fn of(&self, map: &AnyView<'_>) -> Option<Arc<Settled>> {
+        self.kinds.iter().find(|(known, _)| *known == Kind::of(map))?.1.clone()
+    }
+
+    /// Remembers what is settled of a frame that [`frame_of_samples`] made with these options, and of maps like `map`, its samples
+    /// where they lie; `None` if they do not lie as those of a map. Whether it is the first of its size and type.
+    pub fn add(&mut self, frame: &Frame, map: Option<&AnyView<'_>>, options: &ReadOptions) -> bool {
+        let kind = map.map_or(Kind(frame.width, frame.height, 0), Kind::of);
+        let is_first = !self.kinds.iter().any(|(known, _)| *known == kind);
+        if is_first {
+            self.kinds.truncate(MOST_KINDS - 1);
+            self.kinds.insert(0, (kind, map.and_then(|_| Settled::of(frame, options)).map(Arc::new)));
+        }
+        is_first
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -108,6 +154,20 @@ mod tests {
             let view = settled.view(DepthView::new(&map, 64, 48).unwrap()).unwrap();
             assert_eq!(detector.detect(view).unwrap(), &expected);
         }
+    }
+
+    #[test]
+    fn maps_are_remembered_by_size_and_type() {
+        let options = ReadOptions::default();
+        let (values, halves) = (wall(2000, 0), wall(2000, 0).split_off(64 * 24));
+        let frame = frame_of_samples(&bytes(&values), "uint16", (64, 48), &options).unwrap();
+        let view: AnyView<'_> = DepthView::new(&values, 64, 48).unwrap().into();
+        let lower: AnyView<'_> = DepthView::new(&halves, 64, 24).unwrap().into();
+        let mut maps = SettledMaps::default();
+        assert!(maps.of(&view).is_none() && maps.add(&frame, Some(&view), &options));
+        assert!(maps.of(&view).is_some() && !maps.add(&frame, Some(&view), &options));
+        assert!(maps.of(&lower).is_none());
+        assert!(maps.add(&frame, None, &options) && !maps.add(&frame, None, &options));
     }
 
     #[test]

@@ -31,7 +31,7 @@ mod traps;
 pub use doubts::doubts;
 pub use error::{Error, Result};
 pub use frame::{Frame, Pixels, Provenance, Source};
-pub use in_memory::{Settled, frame_of_samples};
+pub use in_memory::{Settled, SettledMaps, frame_of_samples};
 pub use labels::{LabelImage, read_labels};
 pub use noise_table::read_noise_table;
 pub use read::{ReadOptions, decode, read, read_stream};

@@ -1,0 +1,259 @@
+// depthplanes for C++17: finds planes in depth and disparity maps. It wraps depthplanes.h; docs/c.md is the page about it.
+//
+//     depthplanes::Detector detector;
+//     detector.camera(525, 525, 319.5, 239.5);
+//     depthplanes::Detection found = detector.detect(depthplanes::Map(pixels, 640, 480));
+//     for (const dp_plane &plane : found.planes())
+//         std::cout << plane.distance_m << " m\n";
+//
+// What fails throws depthplanes::Error. MIT or Apache 2.0, as you like.
+#ifndef DEPTHPLANES_HPP
+#define DEPTHPLANES_HPP
+
+#include "depthplanes.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace depthplanes {
+
+/// What failed, with the text of the library: what was given, what is accepted.
+class Error : public std::runtime_error {
+public:
+    Error(dp_status status, const char *text) : std::runtime_error(text), status_(status) {}
+
+    /// By whose fault it is.
+    dp_status status() const noexcept { return status_; }
+
+private:
+    dp_status status_;
+};
+
+/// Values side by side in memory that somebody else owns, as std::span of C++20.
+template <class T> class Span {
+public:
+    Span(T *data, std::size_t size) noexcept : data_(data), size_(size) {}
+
+    T *data() const noexcept { return data_; }
+    std::size_t size() const noexcept { return size_; }
+    bool empty() const noexcept { return size_ == 0; }
+    T *begin() const noexcept { return data_; }
+    T *end() const noexcept { return data_ + size_; }
+    T &operator[](std::size_t at) const { return data_[at]; }
+
+    T &at(std::size_t at) const {
+        if (at >= size_)
+            throw std::out_of_range("place " + std::to_string(at) + " of " + std::to_string(size_));
+        return data_[at];
+    }
+
+private:
+    T *data_;
+    std::size_t size_;
+};
+
+/// A map in the caller's memory, row by row, top row first; it owns nothing. Pixels are of type std::uint8_t, std::uint16_t,
+/// float or double.
+class Map {
+public:
+    /// `stride_bytes` from the start of a row to the start of the next; 0 if there is no gap between them.
+    template <class T>
+    Map(const T *pixels, std::size_t width, std::size_t height, std::size_t stride_bytes = 0) noexcept
+        : map_{pixels, static_cast<std::int32_t>(type_of<T>()), width, height, stride_bytes} {}
+
+    /// Of pixels whose type is known only when the program runs.
+    static Map of(dp_pixel_type type, const void *pixels, std::size_t width, std::size_t height, std::size_t stride_bytes = 0) {
+        return Map(dp_map{pixels, static_cast<std::int32_t>(type), width, height, stride_bytes});
+    }
+
+    const dp_map *get() const noexcept { return &map_; }
+
+private:
+    explicit Map(const dp_map &map) noexcept : map_(map) {}
+
+    template <class T> static constexpr dp_pixel_type type_of() {
+        constexpr bool is_known = std::is_same_v<T, std::uint8_t> || std::is_same_v<T, std::uint16_t> ||
+                                  std::is_same_v<T, float> || std::is_same_v<T, double>;
+        static_assert(is_known, "pixels are std::uint8_t, std::uint16_t, float or double");
+        return sizeof(T) == 1 ? DP_UINT8 : sizeof(T) == 2 ? DP_UINT16 : sizeof(T) == 4 ? DP_FLOAT32 : DP_FLOAT64;
+    }
+
+    dp_map map_;
+};
+
+/// What was found in a map. What it lends is valid until the next detection is written to it, and as long as it lives.
+class Detection {
+public:
+    Detection() : detection_(dp_detection_new()) {}
+
+    std::size_t width() const noexcept { return dp_detection_width(get()); }
+    std::size_t height() const noexcept { return dp_detection_height(get()); }
+
+    /// The label image, row by row: 0 = no plane, k + 1 = plane k.
+    Span<const std::uint16_t> labels() const noexcept { return {dp_detection_labels(get()), width() * height()}; }
+
+    /// The label image of curved surfaces; empty unless they were asked for.
+    Span<const std::uint16_t> curved_labels() const noexcept {
+        const std::uint16_t *labels = dp_detection_curved_labels(get());
+        return {labels, labels ? width() * height() : 0};
+    }
+
+    /// The planes, the largest first.
+    Span<const dp_plane> planes() const noexcept { return {dp_detection_planes(get()), dp_detection_plane_count(get())}; }
+
+    /// The plane with that label.
+    const dp_plane &plane(std::uint16_t label) const { return planes().at(std::size_t{label} - 1); }
+
+    /// Places in the label image of the pixels of a plane, in order, as the indices of an organised point cloud.
+    std::vector<int> indices(std::uint16_t label) const {
+        std::vector<int> indices;
+        indices.reserve(plane(label).pixel_count);
+        const Span<const std::uint16_t> all = labels();
+        for (std::size_t at = 0; at < all.size(); ++at)
+            if (all[at] == label)
+                indices.push_back(static_cast<int>(at));
+        return indices;
+    }
+
+    /// What looks wrong, a line for each note; of the first map of each size and type alone.
+    const char *notes() const noexcept { return dp_detection_notes(get()); }
+
+    dp_detection *get() const noexcept { return detection_.get(); }
+
+private:
+    struct Free {
+        void operator()(dp_detection *detection) const noexcept { dp_detection_free(detection); }
+    };
+    std::unique_ptr<dp_detection, Free> detection_;
+};
+
+/// The rings of a plane's outline, each outer ring followed by its holes.
+inline Span<const dp_ring> rings(const dp_plane &plane) noexcept { return {plane.rings, plane.ring_count}; }
+
+/// Finds planes in the maps of one camera. Keep it for all frames. One thread at a time may use it.
+class Detector {
+public:
+    /// Of the usual method, which needs no parameter.
+    Detector() : Detector(dp_detector_new(nullptr)) {}
+
+    /// Of the method of that name (`methods`).
+    explicit Detector(const std::string &method) : Detector(dp_detector_new(method.c_str())) {}
+
+    /// A number by name: a parameter of the method, or what `dp_detector_set` lists.
+    Detector &set(const std::string &name, double value) { return done(dp_detector_set(get(), name.c_str(), value)); }
+
+    /// The same as text, as on a command line.
+    Detector &set_text(const std::string &name, const std::string &value) {
+        return done(dp_detector_set_text(get(), name.c_str(), value.c_str()));
+    }
+
+    /// The sensor by name (`sensors`): unit, nominal camera, noise.
+    Detector &sensor(const std::string &name) { return done(dp_detector_set_sensor(get(), name.c_str())); }
+
+    /// What the numbers mean, by name (`units`).
+    Detector &unit(const std::string &name) { return done(dp_detector_set_unit(get(), name.c_str())); }
+
+    /// Focal lengths and principal point, pixels.
+    Detector &camera(double fx, double fy, double cx, double cy) {
+        return done(dp_detector_set_camera(get(), fx, fy, cx, cy));
+    }
+
+    /// A camera file of any program that is known.
+    Detector &camera_file(const std::string &path) { return done(dp_detector_set_camera_file(get(), path.c_str())); }
+
+    /// Only values from `low` to `high`, in map units, are measurements.
+    Detector &valid_range(double low, double high) { return done(dp_detector_set_valid_range(get(), low, high)); }
+
+    /// Joins pieces of one plane within an angle and a distance.
+    Detector &merge_coplanar(double angle_deg = 3, double distance_m = 0.03) {
+        return done(dp_detector_set_merge_coplanar(get(), angle_deg, distance_m));
+    }
+
+    /// Makes outlines of all planes from now on.
+    Detector &outlines(double tolerance_px = 1.5, std::size_t min_hole_px = 0) {
+        return done(dp_detector_set_outlines(get(), tolerance_px, min_hole_px));
+    }
+
+    /// The planes of a map.
+    Detection detect(const Map &map) {
+        Detection detection;
+        detect(map, detection);
+        return detection;
+    }
+
+    /// The planes of a map, written to a detection whose memory is used again.
+    void detect(const Map &map, Detection &detection) { done(dp_detector_detect(get(), map.get(), detection.get())); }
+
+    /// The points of a plane as they were measured, metres, of the map that the detection is of.
+    std::vector<std::array<double, 3>> points(const Map &map, const Detection &detection, std::uint16_t label) {
+        std::vector<std::array<double, 3>> points(detection.plane(label).pixel_count);
+        auto *first = reinterpret_cast<double(*)[3]>(points.data());
+        done(dp_detector_points(get(), map.get(), detection.get(), label, first, points.size()));
+        return points;
+    }
+
+    /// Why the pixel in column u, row v has a plane or none, and what to change.
+    std::string explain(const Map &map, std::size_t u, std::size_t v) {
+        const char *text = nullptr;
+        done(dp_detector_explain(get(), map.get(), u, v, &text));
+        return text;
+    }
+
+    dp_detector *get() const noexcept { return detector_.get(); }
+
+private:
+    struct Free {
+        void operator()(dp_detector *detector) const noexcept { dp_detector_free(detector); }
+    };
+
+    explicit Detector(dp_detector *made) : detector_(made) {
+        if (!detector_)
+            throw Error(DP_INVALID_ARGUMENT, dp_error(nullptr));
+    }
+
+    Detector &done(dp_status status) {
+        if (status != DP_OK)
+            throw Error(status, dp_error(get()));
+        return *this;
+    }
+
+    std::unique_ptr<dp_detector, Free> detector_;
+};
+
+/// A row of `table`, which is one of dp_methods, dp_sensors and dp_units, for each thing there is.
+template <class Row> Span<const Row> rows(const Row *(*table)(std::size_t *)) {
+    std::size_t count = 0;
+    const Row *first = table(&count);
+    return {first, count};
+}
+
+/// All methods, the usual one first.
+inline Span<const dp_method> methods() { return rows(dp_methods); }
+
+/// All sensors that `Detector::sensor` knows.
+inline Span<const dp_name> sensors() { return rows(dp_sensors); }
+
+/// All units that `Detector::unit` knows.
+inline Span<const dp_name> units() { return rows(dp_units); }
+
+/// The depth of an organised point cloud, metres along z, for a Map of floats: of pcl::PointCloud and whatever else has
+/// `width`, `height` and `points[i].z`.
+template <class Cloud> std::vector<float> depth_of(const Cloud &cloud) {
+    if (cloud.height < 2)
+        throw Error(DP_INVALID_ARGUMENT, "the cloud has one row; accepted: an organised cloud, width x height of a camera");
+    std::vector<float> depth;
+    depth.reserve(cloud.points.size());
+    for (const auto &point : cloud.points)
+        depth.push_back(static_cast<float>(point.z));
+    return depth;
+}
+
+} // namespace depthplanes
+
+#endif

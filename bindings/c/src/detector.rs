@@ -1,0 +1,364 @@
+//! The detector of C: what is stated, the memory that frames share, and the text of the last error.
+
+use crate::border::{for_c, guarded, keep_last, last, required, text};
+use crate::detection::dp_detection;
+use crate::error::{Error, Result, dp_status};
+use crate::map::{Pixels, dp_map};
+use crate::reader::{Read, Reader};
+use crate::settings::Settings;
+use depthplanes::methods;
+use depthplanes::outline::Outliner;
+use depthplanes::{Coplanar, Detection, Detector, Explanation, Intrinsics, Sensor, ValueKind, with_view};
+use depthplanes_io::outputs::Report;
+use depthplanes_io::{Frame, camera_file, doubts, encoding, memory, presets};
+use std::ffi::{CString, c_char};
+use std::mem::MaybeUninit;
+
+/// Finds planes in the maps of one camera. Keep it for all frames: its memory is used again. One thread at a time may use a
+/// detector; different detectors may be used at the same time.
+#[derive(Default)]
+pub struct dp_detector {
+    settings: Settings,
+    outliner: Option<Outliner>,
+    /// Made anew after something was stated.
+    reader: Option<Reader>,
+    idle: Option<Detector>,
+    /// Bytes that there was memory for.
+    memory: [u64; 2],
+    error: CString,
+    explanation: CString,
+}
+
+/// Does something with a detector, which keeps the text of an error.
+fn with(detector: Option<&mut dp_detector>, act: impl FnOnce(&mut dp_detector) -> Result<()>) -> dp_status {
+    let Some(detector) = detector else {
+        let error = Error::null("detector");
+        keep_last(&error);
+        return error.status;
+    };
+    match guarded(|| act(detector)) {
+        Ok(()) => dp_status::DP_OK,
+        Err(error) => {
+            detector.error = for_c(&error.text);
+            error.status
+        }
+    }
+}
+
+/// States something of a detector.
+fn state(detector: Option<&mut dp_detector>, act: impl FnOnce(&mut Settings) -> Result<()>) -> dp_status {
+    with(detector, |detector| {
+        act(&mut detector.settings)?;
+        (detector.reader, detector.idle) = (None, None);
+        Ok(())
+    })
+}
+
+impl dp_detector {
+    fn read<'m>(&mut self, map: &Pixels<'m>) -> Result<Read<'m>> {
+        let (width, height) = map.size();
+        let needed = memory::of_detection(self.settings.method, width, height);
+        if needed > self.memory {
+            memory::check(needed[0], needed[1])?;
+            self.memory = needed;
+        }
+        let reader = match self.reader.take() {
+            Some(reader) => reader,
+            None => Reader::new(self.settings.reading()?),
+        };
+        self.reader.insert(reader).read(map)
+    }
+
+    /// The detector that is idle, or a new one. It does not come back if something fails: then its memory is anybody's.
+    fn finder(&mut self, sensor: Sensor) -> Result<Detector> {
+        let finder = self.idle.take().map_or_else(|| self.settings.detector(), Ok)?;
+        Ok(finder.sensor(sensor))
+    }
+
+    /// Writes what is found to a detection that was emptied; the memory of `spare` is used for it.
+    fn detect(&mut self, map: &dp_map, detection: &mut dp_detection, spare: Detection) -> Result<()> {
+        let map = map.checked()?;
+        let read = self.read(&map)?;
+        let sensor = read.sensor();
+        let mut finder = self.finder(sensor)?;
+        finder.detect(read.view()?)?;
+        let found = finder.exchange(spare);
+        self.idle = Some(finder);
+        let notes = match &read {
+            Read::Copied(frame) => self.notes(&map, frame, &found)?,
+            Read::InPlace(..) => String::new(),
+        };
+        let outlines = self.outliner.as_mut().map(|outliner| outliner.outline_seen_by(&found, &sensor)).transpose()?;
+        detection.fill(found, sensor, outlines, &notes);
+        Ok(())
+    }
+
+    /// What a person should know of a map and of what was found in it, if it is the first of its size and type.
+    fn notes(&mut self, map: &Pixels<'_>, frame: &Frame, found: &Detection) -> Result<String> {
+        if !self.reader.as_mut().map_or(Ok(false), |reader| reader.remember(map, frame))? {
+            return Ok(String::new());
+        }
+        let Settings { method, values, coplanar, .. } = &self.settings;
+        let report = Report { coplanar: *coplanar, ..Report::new("map", frame, method, values, found) };
+        let notes: Vec<String> = frame.warnings.iter().cloned().chain(doubts(&report)).collect();
+        Ok(notes.join("\n"))
+    }
+
+    fn points(
+        &mut self,
+        map: &dp_map,
+        detection: &dp_detection,
+        label: u16,
+        places: &mut [MaybeUninit<[f64; 3]>],
+    ) -> Result<()> {
+        let (map, sensor) = (map.checked()?, detection.sensor);
+        let found = detection.found().filter(|found| (found.width, found.height) == map.size());
+        let found =
+            found.ok_or_else(|| Error::invalid("the detection is not of this map; accepted: what was found in it"))?;
+        let count = found.planes.len();
+        let plane = found
+            .plane(label)
+            .ok_or_else(|| Error::invalid(format!("there is no plane {label}; there are {count}")))?;
+        if places.len() < plane.pixel_count {
+            let (given, needed) = (places.len(), plane.pixel_count);
+            return Err(Error::invalid(format!("there is room for {given} points; plane {label} has {needed}")));
+        }
+        if !sensor.is_metric() {
+            let is_disparity = sensor.value_kind == ValueKind::Disparity;
+            return Err(depthplanes::Error::NotMetric { wants: "points", is_disparity }.into());
+        }
+        let read = self.read(&map)?;
+        with_view!(read.view()?, view => {
+            let valid = view.validity();
+            for ([u, v], place) in found.pixels_of(label).zip(places) {
+                let value = view.row(v)[u];
+                let depth = valid.holds(value).then(|| sensor.value_kind.depth_m(value.into())).flatten();
+                let ray = sensor.ray(u as f64, v as f64);
+                place.write(ray.zip(depth).map_or([f64::NAN; 3], |(ray, depth)| ray.map(|part| part * depth)));
+            }
+        });
+        Ok(())
+    }
+
+    fn explain(&mut self, map: &dp_map, at: [usize; 2]) -> Result<()> {
+        let read = self.read(&map.checked()?)?;
+        let mut finder = self.finder(read.sensor())?;
+        let why = finder.explain(read.view()?, at)?;
+        self.idle = Some(finder);
+        self.explanation = for_c(&readable(&why));
+        Ok(())
+    }
+}
+
+/// The verdict, and what to change.
+fn readable(why: &Explanation) -> String {
+    let suggestion = |tried: &depthplanes::explanation::Suggestion| {
+        let changes: Vec<String> = tried.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        format!("\nTry {}: the pixel is then on a plane of {} pixels.", changes.join(", "), tried.plane_pixels)
+    };
+    why.verdict.to_string() + &why.suggestions.iter().map(suggestion).collect::<String>()
+}
+
+/// A detector of the method of that name (`dp_methods`), null for the usual one, which needs no parameter. Null if there is
+/// no such method; `dp_error(NULL)` then says which there are.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn dp_detector_new(method: *const c_char) -> Option<Box<dp_detector>> {
+    let made = guarded(|| {
+        if method.is_null() {
+            return Ok(Box::default());
+        }
+        // SAFETY: it is a text of C.
+        let method = methods::find(unsafe { text("method", method) }?)?;
+        Ok(Box::new(dp_detector { settings: Settings::new(method), ..dp_detector::default() }))
+    });
+    made.inspect_err(keep_last).ok()
+}
+
+/// Frees a detector; null is none. What it has found stays.
+#[unsafe(no_mangle)]
+pub extern "C" fn dp_detector_free(detector: Option<Box<dp_detector>>) {
+    drop(detector);
+}
+
+/// The text of the last error of a detector: what was given, what is accepted. Of null: of the last call of this thread that
+/// failed without a detector, such as `dp_detector_new`. It is empty if there was none, and valid until the next error.
+#[unsafe(no_mangle)]
+pub extern "C" fn dp_error(detector: Option<&dp_detector>) -> *const c_char {
+    detector.map_or_else(last, |detector| detector.error.as_ptr())
+}
+
+/// States a number by name: a parameter of the method (`dp_methods`), or
+///
+/// - `scale`, `depth-scale`: map units per metre, or metres per map unit
+/// - `missing`: a value that means "not measured", beside 0, NaN and infinity
+/// - `focal` (pixels), `baseline` (metres), `doffs` (pixels): the stereo rig; the numbers are then disparities
+/// - `disparity`, `ray-distance`: 1 if the numbers are disparities, or distances along the rays
+/// - `curved`: 1 if curved surfaces are wanted as well
+/// - `threads`: 1 and up; the answer is the same for any number
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn dp_detector_set(
+    detector: Option<&mut dp_detector>,
+    name: *const c_char,
+    value: f64,
+) -> dp_status {
+    // SAFETY: it is null or a text of C.
+    state(detector, |settings| settings.set(unsafe { text("name", name) }?, value))
+}
+
+/// As `dp_detector_set`, of a number that is written as text, as on a command line.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn dp_detector_set_text(
+    detector: Option<&mut dp_detector>,
+    name: *const c_char,
+    value: *const c_char,
+) -> dp_status {
+    state(detector, |settings| {
+        // SAFETY: they are null or texts of C.
+        let [name, value] = [("name", name), ("value", value)].map(|(name, pointer)| unsafe { text(name, pointer) });
+        settings.set_text(name?, value?)
+    })
+}
+
+/// States the sensor by name (`dp_sensors`), such as "kinect1": its unit, its nominal camera and its noise.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn dp_detector_set_sensor(
+    detector: Option<&mut dp_detector>,
+    sensor: *const c_char,
+) -> dp_status {
+    state(detector, |settings| {
+        // SAFETY: it is null or a text of C.
+        let sensor = presets::by_name(unsafe { text("sensor", sensor) }?)?;
+        settings.reading.preset = Some(sensor.name.into());
+        Ok(())
+    })
+}
+
+/// States what the numbers mean, by name (`dp_units`): "mm", "m", "tum", "disparity" and others. Without it 16-bit numbers are
+/// millimetres, floats are metres, and 8-bit numbers are grey levels without a unit.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn dp_detector_set_unit(detector: Option<&mut dp_detector>, unit: *const c_char) -> dp_status {
+    state(detector, |settings| {
+        // SAFETY: it is null or a text of C.
+        let unit = encoding::by_name(unsafe { text("unit", unit) }?)?;
+        settings.reading.encoding = Some(unit.name.into());
+        Ok(())
+    })
+}
+
+/// States the camera: focal lengths and principal point in pixels, centres of pixels at whole numbers. Without a camera planes
+/// have labels and no metres.
+#[unsafe(no_mangle)]
+pub extern "C" fn dp_detector_set_camera(
+    detector: Option<&mut dp_detector>,
+    fx: f64,
+    fy: f64,
+    cx: f64,
+    cy: f64,
+) -> dp_status {
+    state(detector, |settings| {
+        settings.reading.intrinsics = Some(Intrinsics::new(fx, fy, cx, cy)?);
+        Ok(())
+    })
+}
+
+/// States the camera, its lens and its stereo rig by a file of ROS, OpenCV, RealSense, COLMAP, KITTI and many more programs.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn dp_detector_set_camera_file(
+    detector: Option<&mut dp_detector>,
+    path: *const c_char,
+) -> dp_status {
+    state(detector, |settings| {
+        // SAFETY: it is null or a text of C.
+        let camera = camera_file::read_camera(unsafe { text("path", path) }?)?;
+        settings.reading = std::mem::take(&mut settings.reading).camera(&camera);
+        Ok(())
+    })
+}
+
+/// States that only values from `low` to `high`, in map units, are measurements.
+#[unsafe(no_mangle)]
+pub extern "C" fn dp_detector_set_valid_range(detector: Option<&mut dp_detector>, low: f64, high: f64) -> dp_status {
+    state(detector, |settings| {
+        let range = (low < high).then_some((low, high)).ok_or(depthplanes::Error::ValidRange { low, high })?;
+        settings.reading.valid_range = Some(range);
+        Ok(())
+    })
+}
+
+/// Joins pieces of one plane whose normals differ by no more than that and that lie within that distance of one plane. Needs
+/// unit and camera.
+#[unsafe(no_mangle)]
+pub extern "C" fn dp_detector_set_merge_coplanar(
+    detector: Option<&mut dp_detector>,
+    angle_deg: f64,
+    distance_m: f64,
+) -> dp_status {
+    state(detector, |settings| {
+        settings.coplanar = Some(Coplanar::new(angle_deg, distance_m)?);
+        Ok(())
+    })
+}
+
+/// Makes outlines of all planes from now on, which takes time: rings within `tolerance_px` pixels of the planes' borders (1.5
+/// makes lines of the steps along straight edges, 0 keeps every corner), without holes of fewer than `min_hole_px` pixels.
+#[unsafe(no_mangle)]
+pub extern "C" fn dp_detector_set_outlines(
+    detector: Option<&mut dp_detector>,
+    tolerance_px: f64,
+    min_hole_px: usize,
+) -> dp_status {
+    with(detector, |detector| {
+        detector.outliner = Some(Outliner::new(tolerance_px)?.min_hole_px(min_hole_px));
+        Ok(())
+    })
+}
+
+/// Finds the planes of a map and writes them to a detection, whatever it held before. If that fails, it holds nothing.
+#[unsafe(no_mangle)]
+pub extern "C" fn dp_detector_detect(
+    detector: Option<&mut dp_detector>,
+    map: Option<&dp_map>,
+    mut detection: Option<&mut dp_detection>,
+) -> dp_status {
+    let spare = detection.as_mut().map(|detection| detection.emptied()).unwrap_or_default();
+    with(detector, |detector| detector.detect(required("map", map)?, required("detection", detection)?, spare))
+}
+
+/// Writes the points of a plane as they were measured, metres in camera coordinates, row by row: `pixel_count` of them, NaN where
+/// nothing was measured. There is room for `capacity` of them. The map is read again; it has to be the one that the detection
+/// is of. Needs unit and camera.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn dp_detector_points(
+    detector: Option<&mut dp_detector>,
+    map: Option<&dp_map>,
+    detection: Option<&dp_detection>,
+    label: u16,
+    points: *mut [f64; 3],
+    capacity: usize,
+) -> dp_status {
+    with(detector, |detector| {
+        let (map, detection) = (required("map", map)?, required("detection", detection)?);
+        let start = required("points", (!points.is_null()).then_some(points))?;
+        // SAFETY: there is room for as many, as the caller of C says; they may hold anything.
+        let places = unsafe { std::slice::from_raw_parts_mut(start.cast::<MaybeUninit<[f64; 3]>>(), capacity) };
+        detector.points(map, detection, label, places)
+    })
+}
+
+/// Says why the pixel in column u, row v of a map has a plane or none: a sentence, and a line for each parameter that helps, with
+/// its value. Runs the method several times. What `text` is set to is valid until the next call of it with this detector.
+#[unsafe(no_mangle)]
+pub extern "C" fn dp_detector_explain(
+    detector: Option<&mut dp_detector>,
+    map: Option<&dp_map>,
+    u: usize,
+    v: usize,
+    text: Option<&mut MaybeUninit<*const c_char>>,
+) -> dp_status {
+    with(detector, |detector| {
+        let text = required("text", text)?;
+        detector.explain(required("map", map)?, [u, v])?;
+        text.write(detector.explanation.as_ptr());
+        Ok(())
+    })
+}

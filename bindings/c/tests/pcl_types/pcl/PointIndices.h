@@ -1,0 +1,8 @@
+#pragma once
+#include <vector>
+
+namespace pcl {
+struct PointIndices {
+    std::vector<int> indices;
+};
+} // namespace pcl
