@@ -36,7 +36,7 @@ def worker(worker_program):
 
 @pytest.fixture(scope="session")
 def program():
-    return build("-p", "depthplanes-cli") / "depthplanes"
+    return build("-p", "depthplanes-cli", "--features", "parquet") / "depthplanes"  # as the Python package has it
 
 
 def of_tests(name):

@@ -30,13 +30,16 @@ pub(crate) struct Found {
     map: Map,
     /// The map as a frame, once it was asked for.
     frame: OnceLock<Arc<Pixels>>,
+    /// What a person should know of the result, once it was looked for, which takes as long as the detection.
+    notes: OnceLock<Vec<String>>,
     pub(crate) sensor: Sensor,
     source: String,
 }
 
 impl Found {
     pub(crate) fn new(lent: Lent, map: Map, sensor: Sensor, source: &str) -> Self {
-        Found { lent, map, frame: OnceLock::new(), sensor, source: source.to_string() }
+        let (frame, notes) = (OnceLock::new(), OnceLock::new());
+        Found { lent, map, frame, notes, sensor, source: source.to_string() }
     }
 
     pub(crate) fn detection(&self) -> &Detection {
@@ -93,8 +96,8 @@ impl Found {
             let outlines = outlines.map(|wanted| self.outlined(wanted)).transpose()?;
             let report = Report::new(source, frame, recipe.method, &recipe.values, self.detection());
             let report = Report { coplanar, legend, outlines: outlines.as_ref(), ..report };
-            let notes = doubts(&report);
-            act(&Report { notes: &notes, ..report })
+            let notes = self.notes.get_or_init(|| doubts(&report));
+            act(&Report { notes, ..report })
         })
     }
 
@@ -184,7 +187,8 @@ impl Found {
         let (map, frame) = (self.map.clone_ref(py), self.frame.clone());
         let detection = py.detach(|| selected(from, &names));
         let lent = Lent { detection, seconds: self.lent.seconds, pool: self.lent.pool.clone() };
-        Ok(Found { lent, map, frame, sensor: self.sensor, source: self.source.clone() })
+        let notes = OnceLock::new();
+        Ok(Found { lent, map, frame, notes, sensor: self.sensor, source: self.source.clone() })
     }
 
     /// Columns and rows of the map.

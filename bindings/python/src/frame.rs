@@ -8,6 +8,7 @@ use depthplanes::scene::Spec;
 use depthplanes::track::CameraPose;
 use depthplanes_io::{Frame as Pixels, ReadOptions, memory};
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -55,6 +56,16 @@ impl Frame {
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf, reading: &Reading) -> Result<Self> {
         py.detach(|| Frame::load(&path, &reading.options))
+    }
+
+    /// Reads a file that is in memory.
+    #[staticmethod]
+    fn decode(py: Python<'_>, bytes: PyBackedBytes, name: String, reading: &Reading) -> Result<Self> {
+        py.detach(|| {
+            let needed = memory::of_reading(bytes.len() as u64);
+            memory::check(needed, needed)?;
+            Ok(Frame::new(depthplanes_io::decode(&bytes, &name, &reading.options)?, name))
+        })
     }
 
     /// Makes a synthetic frame.

@@ -42,8 +42,12 @@ pub(crate) fn tables() -> String {
         "methods": methods,
         "sensors": SENSOR_PRESETS.iter().map(|preset| row(preset.name, preset.about)).collect::<Vec<_>>(),
         "units": ENCODINGS.iter().map(|encoding| row(encoding.name, encoding.about)).collect::<Vec<_>>(),
-        "formats": FORMATS.iter().map(|format| row(format.name, format.about)).collect::<Vec<_>>(),
-        "outputs": OUTPUTS.iter().map(|output| row(output.name, output.about)).collect::<Vec<_>>(),
+        "formats": FORMATS.iter().map(|format| {
+            json!({"name": format.name, "about": format.about, "extensions": format.extensions})
+        }).collect::<Vec<_>>(),
+        "outputs": OUTPUTS.iter().map(|output| {
+            json!({"name": output.name, "about": output.about, "file": output.file})
+        }).collect::<Vec<_>>(),
         "scenes": SCENES.iter().map(|scene| row(scene.name, scene.about)).collect::<Vec<_>>(),
         "scene_sensors": SENSORS.iter().map(|sensor| row(sensor.name, sensor.about)).collect::<Vec<_>>(),
     })

@@ -93,6 +93,24 @@ def test_files_that_are_not_there_are_missing_files(program, tmp_path):
     assert str(raised.value) == said(program, "detect", tmp_path / "text.png")
 
 
+def test_bytes_are_read_as_their_file_is(data, tmp_path):
+    for path in (data / "gt_real").glob("*.depth.png"):
+        file, memory = depthplanes.read(path, unit="mm"), depthplanes.read(path.read_bytes(), name=str(path), unit="mm")
+        assert np.array_equal(file.depth, memory.depth) and (file.notes, file.source) == (memory.notes, memory.source)
+    assert depthplanes.read(path.read_bytes()).source == "bytes"
+    (tmp_path / "broken.png").write_bytes(path.read_bytes()[:200])
+    said = []
+    for broken in (tmp_path / "broken.png", path.read_bytes()[:200]):
+        with pytest.raises(depthplanes.InputError) as raised:
+            depthplanes.read(broken)
+        said.append(str(raised.value))
+    assert said[0].removeprefix(f"{tmp_path}/broken.png: ") == said[1].removeprefix("bytes: ")
+    with pytest.raises(depthplanes.InputError, match="name='a' is for bytes"):
+        depthplanes.read(path, name="a")
+    with pytest.raises(depthplanes.InputError):
+        depthplanes.read(b"")
+
+
 def test_nothing_is_written_if_one_name_is_wrong(planes, tmp_path):
     with pytest.raises(depthplanes.InputError, match=r"\.png or \.npy"):
         planes.write(planes=tmp_path / "planes.json", labels=tmp_path / "labels.gif")

@@ -95,6 +95,15 @@ def test_documents_are_the_programs(data, program, tmp_path, planes):
     assert found.explain(20, 30).to_dict() == explained
 
 
+def test_tables_of_the_packages_program_are_parquet(engine, data, tmp_path):
+    parquet, of_csv = engine("pyarrow.parquet"), engine("pyarrow.csv")
+    for ending in ("parquet", "csv"):
+        words = ["detect", data / "gt_real", "--table", tmp_path / f"planes.{ending}"]
+        subprocess.run([sys.executable, "-m", "depthplanes", *words], capture_output=True)
+    table, csv = parquet.read_table(tmp_path / "planes.parquet"), of_csv.read_csv(tmp_path / "planes.csv")
+    assert table.num_rows > 300 and table.to_pylist() == csv.cast(table.schema).to_pylist()
+
+
 def test_the_floor_and_the_noise_are_the_programs(data, program):
     stairs = next((data / "stairs_kinect_v2").glob("*_depth.png"))
     words = ["--preset", "kinect2", "--json"]

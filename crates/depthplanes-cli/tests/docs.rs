@@ -101,8 +101,9 @@ fn run_in(bench: &Bench, path: &Path) {
 }
 
 /// Documents whose commands are run.
-const WITH_COMMANDS: [&str; 20] = [
+const WITH_COMMANDS: [&str; 21] = [
     "docs/cli.md",
+    "docs/batch.md",
     "docs/live.md",
     "docs/robot.md",
     "docs/video.md",

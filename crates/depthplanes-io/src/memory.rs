@@ -50,8 +50,13 @@ pub fn check(used: u64, reserved: u64) -> Result<()> {
 /// # Errors
 /// [`Error::Memory`].
 pub fn check_of_file(path: &Path, most: u64) -> Result<()> {
-    let needed = 6 * fs::metadata(path).map_or(0, |about| about.len().min(most));
+    let needed = of_reading(fs::metadata(path).map_or(0, |about| about.len().min(most)));
     check(needed, needed)
+}
+
+/// Bytes that reading a file of so many bytes uses, for [`check`].
+pub fn of_reading(bytes: u64) -> u64 {
+    6 * bytes
 }
 
 /// Bytes that a detector of a method uses and reserves for a map of that size, for [`check`].

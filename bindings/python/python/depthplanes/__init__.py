@@ -9,8 +9,9 @@
 >>> print(f"{largest.distance:.2f} m from the camera, normal {largest.normal.round(3)}")
 1.55 m from the camera, normal [ 0.    -0.966 -0.259]
 
-`Detector` is for many maps of one camera, `read` for files, `floor` for what a robot stands on, `Tracker` for video. Lengths
-are metres. Camera coordinates are x right, y down, z forward; normals point to the camera. Pixels are column u and row v from 0.
+`Detector` is for many maps of one camera, `read` for files, `floor` for what a robot stands on, `Tracker` for video, the module
+`depthplanes.batch` for millions of files. Lengths are metres. Camera coordinates are x right, y down, z forward; normals point to
+the camera. Pixels are column u and row v from 0.
 
 `python -m depthplanes` is the program of the same name.
 """

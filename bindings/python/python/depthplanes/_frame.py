@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
+from ._errors import InputError
 from ._options import Camera, FileOptions, Path, reading_of
 
 if TYPE_CHECKING:
@@ -105,22 +106,25 @@ class Frame:
 
 
 def read(
-    path: Path,
+    path: Path | bytes,
     *,
     sensor: str | None = None,
     camera: Camera | None = None,
     unit: str | None = None,
+    name: str | None = None,
     **options: Unpack[FileOptions],
 ) -> Frame:
-    """Reads a map from a file of any format that the program knows: PNG, TIFF, PFM, NPY, NPZ, PCD, RVL and others.
+    """Reads a map from a file, or from its bytes: PNG, TIFF, PFM, NPY, NPZ, PCD, RVL and every other format of the program.
 
     The format is recognised by the content, not by the name. What is stated goes before the sensor's usual, and that before
     what the numbers look like; `Frame.unit` and `Frame.notes` say what it was taken for.
 
     Parameters
     ----------
-    path : path
-        The file.
+    path : path or bytes
+        The file, or what is in it.
+    name : str, optional
+        What bytes are called, in `Frame.source` and in messages; ``"bytes"`` unless it is stated.
     sensor, camera, unit, **options
         What is stated of it, as for `Detector`; of files also `member` (which of several maps: the array's name in NPZ, its
         index in NPY, the page of TIFF), `raw_size` (width, height) and `raw_type` (such as ``"uint16"``) of files without a
@@ -137,7 +141,12 @@ def read(
     InputError
         For one that is no map; the text says what it is.
     """
-    return Frame(_native.Frame.read(os.fspath(path), reading_of(sensor, camera, unit, options)))
+    reading = reading_of(sensor, camera, unit, options)
+    if isinstance(path, bytes):
+        return Frame(_native.Frame.decode(path, "bytes" if name is None else name, reading))
+    if name is not None:
+        raise InputError(f"name={name!r} is for bytes; the frame of a file is called by its path, which is given")
+    return Frame(_native.Frame.read(os.fspath(path), reading))
 
 
 def scene(spec: str = "room") -> Frame:

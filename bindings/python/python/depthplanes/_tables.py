@@ -14,8 +14,8 @@ def tables() -> dict[str, list[dict[str, Any]]]:
     Returns
     -------
     dict
-        Rows of `methods` (each with its `parameters`: name, default, unit, accepted, about), `sensors`, `units`, `formats`,
-        `outputs`, `scenes` and `scene_sensors`.
+        Rows of `methods` (each with its `parameters`: name, default, unit, accepted, about), `sensors`, `units`, `formats` (with
+        their `extensions`), `outputs` (with the end of their files' names, `file`), `scenes` and `scene_sensors`.
 
     Examples
     --------

@@ -1,0 +1,188 @@
+"""Planes of very many frames: a function from a path to a row, and a run of it over all paths, on this machine, on Dask or on Ray.
+
+`process` is the work on a frame. `run` cuts the paths into parts and has each part made by one worker into one Parquet file, which
+has its name only when it is whole: however often an engine tries a part again, each frame is there exactly once, and a run that
+ended early goes on when it is repeated. `read_rows` reads the parts. Tables need pyarrow; folders, patterns and URLs fsspec.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from .._errors import FileError, InputError
+from .._optional import need
+from .._options import Path
+from ._engines import ENGINES
+from ._files import absolute, expand, storage
+from ._parts import Job, begin, has_failed, name_of, parts_in, settings_in
+from ._rows import Processor, Row, parquet, schema
+
+if TYPE_CHECKING:
+    import pyarrow
+
+__all__ = ["Summary", "process", "read_rows", "run"]
+
+
+class Summary(NamedTuple):
+    """What a run did."""
+
+    frames: int
+    """All frames."""
+    done: int
+    """Those that this run looked at; the others were done by earlier runs."""
+    failed: int
+    """Of these, the ones that could not be read or searched: rows with an `error`."""
+    planes: int
+    """The planes of these."""
+    parts: int
+    """All parts."""
+
+
+def process(path: Path, *, labels: Path | None = None, **options: Any) -> Row:
+    """Reads a frame and finds its planes. An error is in the row, and never raised.
+
+    Parameters
+    ----------
+    path : path or URL
+        The frame: a file, or what fsspec opens, such as ``"s3://bucket/depth.png"`` or ``"zip://1.png::depth.zip"``.
+    labels : path or URL, optional
+        A folder for the label image, a PNG of 16 bits; its name has a checksum of the path.
+    **options
+        As for `depthplanes.read` and `depthplanes.Detector`: `sensor`, `camera`, `unit`, `method`, `min_pixels` and others.
+
+    Returns
+    -------
+    dict
+        `path`; `error`, None or the text; `width`, `height`, `valid_pixels`; `notes`, what is odd about the frame; `labels`, where
+        the label image is, or None; `planes`, a dict for each with the columns of the program's table (docs/planes-schema.md).
+        Of a frame with an error there are no planes, and the numbers are None.
+
+    Raises
+    ------
+    InputError, InputTypeError
+        For options that are not accepted.
+
+    Examples
+    --------
+    >>> from depthplanes import batch
+    >>> row = batch.process("nothing-there.png", unit="mm")
+    >>> row["planes"], row["error"][:17]
+    ([], 'nothing-there.png')
+    """
+    return Processor(None if labels is None else absolute(labels), options)(os.fspath(path))
+
+
+def run(
+    paths: Path | Iterable[Path],
+    out: Path,
+    *,
+    engine: str = "local",
+    workers: int | None = None,
+    part: int = 256,
+    labels: Path | None = None,
+    client: Any = None,
+    retry_failed: bool = False,
+    **options: Any,
+) -> Summary:
+    """Processes all frames into `out`, a Parquet file for each part, and says what came of it.
+
+    Parts that are there already are left out, so that a run that ended early goes on when it is repeated.
+
+    Parameters
+    ----------
+    paths : path, URL, or several
+        Frames. A folder is the maps in it, without the program's results; a pattern (``*``, ``**``, ``?``) what matches; both by
+        name. They may be URLs of fsspec. Files of this machine have to be there, under the same names, for all workers.
+    out : path or URL
+        The folder of the parts, and of ``batch.json``, which says what was asked for. All workers write to it.
+    engine : {"local", "dask", "ray"}, optional
+        Threads of this process, workers of Dask, or actors of Ray Data.
+    workers : int, optional
+        How many. Without it as many as there are processors, on this machine or in Ray's cluster.
+    part : int, optional
+        Frames of a part.
+    labels : path or URL, optional
+        A folder for the label images.
+    client : distributed.Client, optional
+        A cluster of Dask that is there already, all of which is used; without it workers are started on this machine. Ray takes
+        what is running (``ray.init``).
+    retry_failed : bool, optional
+        Whether parts are made again in which a frame failed.
+    **options
+        As for `process`.
+
+    Returns
+    -------
+    Summary
+
+    Raises
+    ------
+    InputError, InputTypeError
+        For options that are not accepted, paths without a frame, and a folder that has results of other options or frames.
+    FileError
+        If the workers have written where this process does not see it.
+    MissingPackageError
+        Without pyarrow, fsspec or the engine.
+    """
+    _check(engine, workers, part, client)
+    job = Job.of(out, labels, options)
+    frames = expand(paths)
+    there = begin(job, frames, part)
+    if retry_failed:
+        there = {number for number in there if not has_failed(job.out, number)}
+    parts = [(number, frames[at : at + part]) for number, at in enumerate(range(0, len(frames), part))]
+    due = [(number, of_part) for number, of_part in parts if number not in there]
+    made = list(ENGINES[engine](job, due, workers, client)) if due else []
+    missing = len(parts) - len(parts_in(*storage(job.out)))
+    if missing:
+        text = f"{job.out}: {missing} of {len(parts)} parts were written, but not here"
+        raise FileError(f"{text}; accepted: a folder or URL that this process shares with all workers")
+    done, failed, planes = (sum(counts) for counts in zip((0, 0, 0), *made, strict=True))
+    return Summary(len(frames), done, failed, planes, len(parts))
+
+
+def read_rows(out: Path, *, partial: bool = False) -> pyarrow.Table:
+    """All rows that `run` wrote, in the order of the frames.
+
+    Parameters
+    ----------
+    out : path or URL
+        The folder of the parts.
+    partial : bool, optional
+        Whether parts may be missing, of a run that has not ended.
+
+    Returns
+    -------
+    pyarrow.Table
+        A row for each frame, with the fields of `process`.
+
+    Raises
+    ------
+    InputError
+        For a folder without results, and for one that misses parts.
+    """
+    arrow = need("pyarrow", "pyarrow", "batch.read_rows()")
+    files, folder = storage(absolute(out))
+    settings = settings_in(files, folder)
+    if settings is None:
+        raise InputError(f"{out} has no results; accepted: a folder that depthplanes.batch.run has written to")
+    numbers, parts = sorted(parts_in(files, folder)), -(-settings["frames"] // settings["part"])
+    if len(numbers) < parts and not partial:
+        text = f"{out} has {len(numbers)} of {parts} parts; repeat the run that they are of, or state partial=True"
+        raise InputError(text)
+    tables = [parquet().read_table(io.BytesIO(files.cat_file(f"{folder}/{name_of(number)}"))) for number in numbers]
+    return arrow.concat_tables([schema().empty_table(), *tables])
+
+
+def _check(engine: str, workers: int | None, part: int, client: Any) -> None:
+    if engine not in ENGINES:
+        raise InputError(f"engine={engine!r}; accepted: " + ", ".join(map(repr, ENGINES)))
+    for name, value in (("part", part), ("workers", workers)):
+        if value is not None and (not isinstance(value, int) or value < 1):
+            raise InputError(f"{name}={value!r}; accepted: a whole number from 1")
+    if client is not None and (engine != "dask" or workers is not None):
+        text = f"client with engine={engine!r} and workers={workers!r}"
+        raise InputError(f'{text}; accepted: engine="dask", and all workers of the client')

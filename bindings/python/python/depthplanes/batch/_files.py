@@ -1,0 +1,107 @@
+"""Files on this machine and behind URLs of fsspec, and the frames that paths stand for."""
+
+from __future__ import annotations
+
+import functools
+import os
+import posixpath
+import uuid
+from collections import Counter
+from collections.abc import Iterable
+from typing import Any
+
+from .._errors import InputError
+from .._optional import need
+from .._options import Path
+from .._tables import tables
+
+
+def is_url(path: str) -> bool:
+    """Whether it is for fsspec alone."""
+    return "://" in path or "::" in path
+
+
+def absolute(path: Path) -> str:
+    """As workers understand it, whatever folder they run in."""
+    text = os.fspath(path)
+    return text if is_url(text) else os.path.abspath(text)
+
+
+def storage(path: str) -> tuple[Any, str]:
+    """The file system of fsspec, and the path there."""
+    core = need("fsspec.core", "fsspec", "depthplanes.batch")
+    files, inside = core.url_to_fs(path)
+    return files, inside.rstrip("/")
+
+
+def write(files: Any, path: str, content: bytes) -> None:
+    """Writes a file beside its name and then renames it, so that it is whole or not there."""
+    beside = f"{path}.{uuid.uuid4().hex}.partial"
+    try:
+        try:
+            files.pipe_file(beside, content)
+        except FileNotFoundError:
+            files.makedirs(posixpath.dirname(path), exist_ok=True)
+            files.pipe_file(beside, content)
+        files.mv(beside, path)
+    except BaseException:
+        if files.exists(beside):
+            files.rm_file(beside)
+        raise
+
+
+def expand(paths: Path | Iterable[Path]) -> list[str]:
+    """All frames that paths, folders and patterns stand for, in order.
+
+    Raises
+    ------
+    InputError
+        If there is none, or one more than once.
+    """
+    words = [paths] if isinstance(paths, (str, os.PathLike)) else list(paths)
+    frames = [frame for word in words for frame in _expand_word(absolute(word))]
+    if not frames:
+        raise InputError("there is no path; accepted: frames, folders, patterns, and URLs of these")
+    frame, count = Counter(frames).most_common(1)[0]
+    if count > 1:
+        raise InputError(f"{frame} is there {count} times; accepted: each frame once")
+    return frames
+
+
+def _expand_word(word: str) -> list[str]:
+    path, joint, outer = word.partition("::")
+    is_pattern = any(sign in path for sign in "*?[")
+    if _is_map(path) and not is_pattern:
+        return [word]  # of which the system need not be asked, since there are many
+    files, inside = storage(word)
+    if is_pattern and not files.exists(inside):
+        found = [path for path in files.glob(inside) if not _is_result(path)]
+        lacking = "nothing matches"
+    elif files.isdir(inside):
+        found = [entry["name"] for entry in files.ls(inside, detail=True) if entry["type"] == "file" and _is_map(entry["name"])]
+        lacking = f"no map in this folder; looked for *{', *'.join(_endings())}"
+    else:
+        return [word]
+    if not found:
+        raise InputError(f"{word}: {lacking}")
+    return sorted(files.unstrip_protocol(path) + joint + outer if is_url(word) else path for path in found)
+
+
+def _is_map(path: str) -> bool:
+    """Whether it has the name of a map, and not of a result of the program."""
+    return path.lower().endswith(_endings()) and not _is_result(path)
+
+
+@functools.cache
+def _endings() -> tuple[str, ...]:
+    return tuple("." + ending for form in tables()["formats"] for ending in form["extensions"])
+
+
+def _is_result(path: str) -> bool:
+    name = posixpath.basename(path)
+    return any(name == result or name.endswith("." + result) for result in _results())
+
+
+@functools.cache
+def _results() -> tuple[str, ...]:
+    return tuple(output["file"] for output in tables()["outputs"])
