@@ -13,6 +13,9 @@ use std::sync::{Mutex, PoisonError};
 #[pyclass(frozen, module = "depthplanes._native")]
 pub(crate) struct Tracker(Mutex<track::Tracker>);
 
+/// Ids of the planes, a dictionary for each that is followed, and the label image.
+type Tracked<'py> = (Vec<u32>, Vec<Bound<'py, PyDict>>, Bound<'py, PyArray2<u16>>);
+
 #[pymethods]
 impl Tracker {
     #[new]
@@ -28,7 +31,7 @@ impl Tracker {
         py: Python<'py>,
         found: &Found,
         pose: Option<([[f64; 3]; 3], [f64; 3])>,
-    ) -> Result<(Vec<u32>, Vec<Bound<'py, PyDict>>, Bound<'py, PyArray2<u16>>)> {
+    ) -> Result<Tracked<'py>> {
         let pose = pose.map(|(rotation, translation_m)| CameraPose::new(rotation, translation_m)).transpose()?;
         let mut tracker = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let (map, detection) = (found.frame(py)?.view()?, found.detection());
