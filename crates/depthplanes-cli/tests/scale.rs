@@ -56,7 +56,8 @@ fn parts_are_the_whole() {
     assert!(results(&bench, "parts") == results(&bench, "whole"));
     let whole = String::from_utf8(bench.read("whole.csv")).unwrap();
     let mut whole: Vec<String> = whole.lines().skip(1).map(String::from).collect();
-    (rows.sort(), whole.sort());
+    rows.sort();
+    whole.sort();
     assert_eq!(rows, whole);
     // What other parts did is done: with other parts, and with none.
     let again = bench.run(&["detect", "maps", "--out-dir", "parts", "--table", "all.csv", "--resume"]);
@@ -124,7 +125,7 @@ fn what_has_changed_is_missing_or_failed_is_done_again() {
     assert!(failed["error"].as_str().unwrap().starts_with("maps/bad.pgm: "), "{failed}");
     let table = bench.read("planes.csv");
     bench.write("maps/bad.pgm", &two_planes(2000));
-    bench.write("maps/1.pgm", &two_planes(3000)[..].to_vec());
+    bench.write("maps/1.pgm", &two_planes(3000));
     std::fs::remove_file(bench.folder.join("out/3.labels.png")).unwrap();
     let again = bench.run(&RESUME);
     assert!(again.code == Some(0) && again.err.contains("3 of 6 inputs are done already"), "{again:?}");
