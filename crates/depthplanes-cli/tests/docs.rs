@@ -302,6 +302,7 @@ fn links_of_the_docs_lead_to_files() {
         "docs/metrics.md",
         "docs/planes-schema.md",
         "docs/python.md",
+        "docs/browser.md",
     ];
     for document in WITH_COMMANDS.into_iter().chain(others) {
         let path = root().join(document);

@@ -184,6 +184,7 @@ fn no_file_knows_one_that_knows_it() {
         ("depthplanes-ros2", 10),
         ("depthplanes-rerun", 5),
         ("../bindings/python", 10),
+        ("../bindings/web", 5),
     ];
     for (name, least) in crates {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name).join("src");

@@ -90,6 +90,7 @@ fn unsafe_code_stands_in_the_kernels_alone() {
     assert_eq!(files_with("crates/depthplanes-ros2/src", &["unsafe "]), [""; 0]);
     assert_eq!(files_with("crates/depthplanes-rerun/src", &["unsafe "]), [""; 0]);
     assert_eq!(files_with("bindings/python/src", &["unsafe "]), ["array.rs"]); // memory that NumPy and Rust share
+    assert_eq!(files_with("bindings/web/src", &["unsafe "]), ["clock.rs"]); // the clock of JavaScript, which is declared
 }
 
 #[test]
@@ -126,6 +127,7 @@ fn nobody_but_tests_and_benchmarks_asks_for_stages_by_themselves() {
         "crates/depthplanes-ros2",
         "crates/depthplanes-rerun",
         "bindings/python",
+        "bindings/web",
     ] {
         let folder = &format!("{krate}/src");
         assert_eq!(files_with(folder, &["::internals"]), [""; 0], "{folder}");
