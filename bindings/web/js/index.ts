@@ -146,6 +146,9 @@ export class Detector {
         }
         const { sample, bytes } = numbers(map);
         const size = { width: whole("width", width, 1), height: whole("height", height, 1) };
+        if (map.length !== size.width * size.height) {
+            throw new InputError(`the array has ${map.length} numbers; accepted: ${size.width} x ${size.height} = ${size.width * size.height}`);
+        }
         return new Planes(this.#module, { map: { array: { sample, ...size } }, words: this.options }, bytes);
     }
 }

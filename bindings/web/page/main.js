@@ -32,9 +32,16 @@ const stages = new Stages(find("stages"), find("total"));
 const choices = new Choices(find("choices"), want, banner);
 globalThis.depthplanes = Object.assign(page, { view2d, view3d, desk }); // for the browser's console, and for tests
 
+/** What is stated of a map; the size of files without a header is not that of others. */
+function stated({ file }, { raw_size, ...others }) {
+    const { extensions } = page.tables.formats.find(({ name }) => name === "raw");
+    const isRaw = extensions.some(end => file?.toLowerCase().endsWith(`.${end}`));
+    return isRaw ? { raw_size, ...others } : others;
+}
+
 /** The question of what is wanted. */
 function question(ask, { map, reading, method, parameters }) {
-    return { ask, map, words: { ...reading, ...(ask === "camera" ? {} : { method, ...parameters }) } };
+    return { ask, map, words: { ...stated(map, reading), ...(ask === "camera" ? {} : { method, ...parameters }) } };
 }
 
 /** Shows something else. While it is found only the newest wish waits. */

@@ -1,5 +1,6 @@
 // What the tests of the package and of the page share: the package as it was built, the program, recorded maps.
 
+import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { existsSync } from "node:fs";
 import { mkdtemp, readFile, readdir, rm, writeFile } from "node:fs/promises";
@@ -72,6 +73,14 @@ export async function native(folder, files, words = []) {
     program(["detect", ...files.map(({ name }) => name), "--out-dir", "native", "--only", "labels", ...words], folder);
     const image = async ({ stem }) => [stem, await readFile(join(folder, "native", `${stem}.labels.png`))];
     return Object.fromEntries(await Promise.all(files.map(image)));
+}
+
+/** That two documents of JSON are one, but for the last digits of covariances: processors do not agree on the last bit of `exp`. */
+export function assertDocument(made, expected) {
+    const digits = (name, value) => name === "covariance" ? value.map(row => row.map(number => Number(number.toPrecision(12)))) : value;
+    const [a, b] = [made, expected].map(text => JSON.stringify(JSON.parse(Buffer.from(text)), digits, 1));
+    assert.equal(a, b);
+    assert.equal(Buffer.from(made).toString().split("\n").length, Buffer.from(expected).toString().split("\n").length);
 }
 
 /** The numbers of a label image. */
