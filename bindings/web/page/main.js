@@ -89,8 +89,8 @@ async function show(wanted) {
 function draw(frame, isOther) {
     page.frame = frame;
     if (isOther) view3d.hasLooked = false;
-    view2d.show(frame, isOther);
-    view3d.show(frame, isOther);
+    view2d.show(frame, true); // nothing moves here from frame to frame
+    view3d.show(frame, true);
     stages.means.clear();
     stages.add(frame);
     showState();
@@ -212,5 +212,6 @@ async function begin() {
     choices.make(tables);
     offer(find("downloads"), tables.outputs, page, (output, extension) => desk.ask(question({ encode: [output, extension] }, page.state), page.state.bytes), banner);
     want({});
+    want({}); // once more: the first time the browser still compiles, and that is no time of the method
 }
 begin();
