@@ -9,7 +9,7 @@
  * @module
  */
 
-import { InputError, Module, type MapOf, type Question, type Wasm } from "./module.js";
+import { InputError, Module, type MapOf, type Request, type Wasm } from "./module.js";
 import type { DetectorOptions, Reading, Search } from "./options.js";
 import type { Explanation, Plane, PlanesRecord } from "./results.js";
 import type { Method, Row, Tables } from "./tables.js";
@@ -82,12 +82,12 @@ export class Planes {
     readonly record: PlanesRecord;
 
     readonly #module: Module;
-    readonly #question: Omit<Question, "ask">;
+    readonly #request: Omit<Request, "ask">;
     readonly #bytes: Uint8Array;
 
     /** @internal */
-    constructor(module: Module, question: Omit<Question, "ask">, bytes: Uint8Array) {
-        const found = module.ask({ ask: "detect", ...question }, bytes);
+    constructor(module: Module, request: Omit<Request, "ask">, bytes: Uint8Array) {
+        const found = module.ask({ ask: "detect", ...request }, bytes);
         this.record = JSON.parse(new TextDecoder().decode(found.record));
         this.width = this.record.width;
         this.height = this.record.height;
@@ -96,7 +96,7 @@ export class Planes {
         this.planes = this.record.planes;
         this.stages = Object.fromEntries(found.stages);
         this.notes = this.record.warnings;
-        [this.#module, this.#question, this.#bytes] = [module, question, bytes];
+        [this.#module, this.#request, this.#bytes] = [module, request, bytes];
     }
 
     /**
@@ -106,7 +106,7 @@ export class Planes {
      */
     explain(u: number, v: number): Explanation {
         for (const [name, given] of Object.entries({ u, v })) whole(name, given, 0);
-        const { arrays, ...explanation } = this.#module.ask({ ask: { explain: [u, v] }, ...this.#question }, this.#bytes);
+        const { arrays, ...explanation } = this.#module.ask({ ask: { explain: [u, v] }, ...this.#request }, this.#bytes);
         return explanation as Explanation;
     }
 
@@ -117,7 +117,7 @@ export class Planes {
      * @throws {InputError} for an output or an extension that there is not, or that needs a camera.
      */
     encode(output: string, extension: string): Uint8Array {
-        return this.#module.ask({ ask: { encode: [output, extension] }, ...this.#question }, this.#bytes).bytes;
+        return this.#module.ask({ ask: { encode: [output, extension] }, ...this.#request }, this.#bytes).bytes;
     }
 }
 
@@ -141,8 +141,8 @@ export class Detector {
     detect(map: Frame): Planes;
     detect(map: MapArray | Frame, width?: number, height?: number): Planes {
         if (map instanceof Frame) {
-            const question = { map: map.map, read_with: map.reading, words: this.options };
-            return new Planes(this.#module, question, map.bytes);
+            const request = { map: map.map, read_with: map.reading, words: this.options };
+            return new Planes(this.#module, request, map.bytes);
         }
         const { sample, bytes } = numbers(map);
         const size = { width: whole("width", width, 1), height: whole("height", height, 1) };

@@ -1,4 +1,4 @@
-// The WebAssembly module: questions go in, answers come out, each a head of JSON with numbers behind it.
+// The WebAssembly module: requests go in, responses come out, each a head of JSON with numbers behind it.
 
 import { decode } from "../../../crates/depthplanes-serve/page/src/message.js";
 
@@ -7,14 +7,14 @@ export class InputError extends Error {
     override name = "InputError";
 }
 
-/** What a question is about: an array, a file, or a scene. */
+/** What a request is about: an array, a file, or a scene. */
 export type MapOf =
     | { array: { sample: string; width: number; height: number } }
     | { file: string }
     | { scene: string };
 
-/** A question; see `src/question.rs`. */
-export interface Question {
+/** A request; see `src/request.rs`. */
+export interface Request {
     ask: string | Record<string, unknown>;
     map?: MapOf;
     read_with?: object;
@@ -24,8 +24,8 @@ export interface Question {
 interface Exports {
     memory: WebAssembly.Memory;
     request(bytes: number): number;
-    answer(): number;
-    answered(): number;
+    respond(): number;
+    response(): number;
 }
 
 /** Where the module's bytes are. */
@@ -47,26 +47,26 @@ export class Module {
     }
 
     /** Asks; the answer's head with its arrays. */
-    ask(question: Question, bytes: Uint8Array = NOTHING): any {
-        const head = decode(this.exchange(question, bytes));
+    ask(request: Request, bytes: Uint8Array = NOTHING): any {
+        const head = decode(this.exchange(request, bytes));
         if (typeof head.error === "string") throw new InputError(head.error);
         return head;
     }
 
     /** Asks; the answer's bytes, a copy. */
-    exchange(question: Question, bytes: Uint8Array = NOTHING): ArrayBuffer {
-        const text = new TextEncoder().encode(JSON.stringify(question, finite));
+    exchange(request: Request, bytes: Uint8Array = NOTHING): ArrayBuffer {
+        const text = new TextEncoder().encode(JSON.stringify(request, finite));
         const length = 4 + text.length + bytes.length;
         try {
-            const { memory, request, answer, answered } = this.exports;
-            const at = request(length) >>> 0; // addresses come as signed numbers
+            const { memory, respond, response } = this.exports;
+            const at = this.exports.request(length) >>> 0; // addresses come as signed numbers
             if (at === 0) throw new InputError(`${length} bytes of memory are needed and cannot be had`);
             new DataView(memory.buffer).setUint32(at, text.length, true);
             const room = new Uint8Array(memory.buffer, at + 4, length - 4);
             room.set(text);
             room.set(bytes, text.length);
-            const size = answer() >>> 0;
-            const from = answered() >>> 0;
+            const size = respond() >>> 0;
+            const from = response() >>> 0;
             return memory.buffer.slice(from, from + size) as ArrayBuffer; // memory may have grown, and then moved
         } catch (error) {
             if (!(error instanceof WebAssembly.RuntimeError)) throw error;

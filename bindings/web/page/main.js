@@ -7,7 +7,7 @@ import { Sliders, node } from "../../../crates/depthplanes-serve/page/src/slider
 import { View2d } from "../../../crates/depthplanes-serve/page/src/view2d.js";
 import { View3d } from "../../../crates/depthplanes-serve/page/src/view3d.js";
 import { Choices } from "./choices.js";
-import { Desk } from "./desk.js";
+import { Client } from "./client.js";
 import { offer } from "./downloads.js";
 import { keys } from "./keys.js";
 
@@ -19,7 +19,7 @@ const NOTHING = { map: { scene: FIRST }, bytes: undefined, reading: {}, method: 
 
 const find = id => document.getElementById(id);
 /* global WORKER: the text of the worker's script */
-const desk = new Desk(WORKER);
+const client = new Client(WORKER);
 /** What is shown: `state` made `frame`; `wanted` comes next. */
 const page = { tables: null, state: NOTHING, wanted: null, isBusy: false, frame: null, serial: 0, cameras: 0, chosen: null };
 
@@ -30,7 +30,7 @@ const setParameter = (name, value) => want({ parameters: { ...(page.wanted ?? pa
 const sliders = new Sliders(find("parameters"), setParameter, () => want({ parameters: {} }));
 const stages = new Stages(find("stages"), find("total"));
 const choices = new Choices(find("choices"), want, banner);
-globalThis.depthplanes = Object.assign(page, { view2d, view3d, desk }); // for the browser's console, and for tests
+globalThis.depthplanes = Object.assign(page, { view2d, view3d, client }); // for the browser's console, and for tests
 
 /** What is stated of a map; the size of files without a header is not that of others. */
 function stated({ file }, { raw_size, ...others }) {
@@ -39,8 +39,8 @@ function stated({ file }, { raw_size, ...others }) {
     return isRaw ? { raw_size, ...others } : others;
 }
 
-/** The question of what is wanted. */
-function question(ask, { map, reading, method, parameters }) {
+/** The request of what is wanted. */
+function request(ask, { map, reading, method, parameters }) {
     return { ask, map, words: { ...stated(map, reading), ...(ask === "camera" ? {} : { method, ...parameters }) } };
 }
 
@@ -69,11 +69,11 @@ async function work() {
 }
 
 async function show(wanted) {
-    const frame = await desk.ask(question("show", wanted), wanted.bytes);
+    const frame = await client.ask(request("show", wanted), wanted.bytes);
     const { state } = page;
     const isOther = wanted.map !== state.map || !page.frame;
     if (isOther || wanted.reading !== state.reading) {
-        const camera = await desk.ask(question("camera", wanted), wanted.bytes);
+        const camera = await client.ask(request("camera", wanted), wanted.bytes);
         page.camera = camera.rays ? camera : null;
         page.cameras++;
         if (page.camera) view3d.setCamera(camera);
@@ -152,7 +152,7 @@ async function ask(type, { at, name, value } = {}) {
     if (type === "set") setParameter(name, value);
     if (type !== "explain") return;
     try {
-        pick.answer(await desk.ask(question({ explain: at }, page.state), page.state.bytes));
+        pick.answer(await client.ask(request({ explain: at }, page.state), page.state.bytes));
     } catch (error) {
         pick.answer({ at, error: error.message });
     }
@@ -201,7 +201,7 @@ keys({ page, look, modes: { 1: "planes", 2: "depth", 3: "ground" }, setMode, but
 /** The page begins with a sample, so that there is something to see. */
 async function begin() {
     try {
-        page.tables = await desk.ask({ ask: "tables" });
+        page.tables = await client.ask({ ask: "tables" });
     } catch (error) {
         return banner(error.message);
     }
@@ -210,7 +210,7 @@ async function begin() {
     const samples = tables.scenes.map(({ name, about }) => node("option", { value: `${name}:sensor=kinect`, textContent: `Sample: ${name}`, title: about }));
     find("sample").replaceChildren(node("option", { value: "", textContent: "Samples", disabled: true }), ...samples);
     choices.make(tables);
-    offer(find("downloads"), tables.outputs, page, (output, extension) => desk.ask(question({ encode: [output, extension] }, page.state), page.state.bytes), banner);
+    offer(find("downloads"), tables.outputs, page, (output, extension) => client.ask(request({ encode: [output, extension] }, page.state), page.state.bytes), banner);
     want({});
     want({}); // once more: the first time the browser still compiles, and that is no time of the method
 }

@@ -1,7 +1,7 @@
 //! How planes are looked for: words of JavaScript as a detector, with its memory.
 
+use crate::error::{InputError, Result};
 use crate::reading::{Words, take};
-use crate::refusal::{Refusal, Result};
 use depthplanes::methods::{self, MethodInfo};
 use depthplanes::{Coplanar, Detection, Detector, Error};
 use depthplanes_io::outputs::{Report, explanation_record};
@@ -95,7 +95,7 @@ fn values(method: &'static MethodInfo, given: &Words) -> Result<Vec<f64>> {
     let mut named = Vec::new();
     for (name, value) in given.iter().filter(|(_, value)| !value.is_null()) {
         let name = name.replace('_', "-");
-        let value = value.as_f64().ok_or_else(|| Refusal(format!("{name} is {value}; accepted: a number")));
+        let value = value.as_f64().ok_or_else(|| InputError(format!("{name} is {value}; accepted: a number")));
         named.push((name, value));
     }
     let mut values = method.defaults();

@@ -1,11 +1,11 @@
-//! The map that a question is about.
+//! The map that a request is about.
 
-use crate::refusal::Result;
+use crate::error::Result;
 use depthplanes::scene::Spec;
 use depthplanes_io::{Frame, ReadOptions, frame_of_samples, memory};
 use serde::Deserialize;
 
-/// What the bytes of a question are.
+/// What the bytes of a request are.
 #[derive(Debug, Deserialize, PartialEq)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum MapOf {

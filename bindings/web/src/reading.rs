@@ -1,6 +1,6 @@
 //! What is stated of a map beside its numbers: words of JavaScript as the readers take them.
 
-use crate::refusal::{Refusal, Result};
+use crate::error::{InputError, Result};
 use depthplanes::Intrinsics;
 use depthplanes::noise::{NoiseTable, SensorNoise};
 use depthplanes_io::ReadOptions;
@@ -21,7 +21,7 @@ pub(crate) fn take<T: DeserializeOwned>(words: &mut Words, name: &str, accepted:
         None | Some(Value::Null) => Ok(None),
         Some(given) => match T::deserialize(&given) {
             Ok(value) => Ok(Some(value)),
-            Err(_) => Err(Refusal(format!("{name} is {given}; accepted: {accepted}"))),
+            Err(_) => Err(InputError(format!("{name} is {given}; accepted: {accepted}"))),
         },
     }
 }
@@ -65,7 +65,7 @@ pub(crate) fn reading(words: &mut Words) -> Result<ReadOptions> {
         Some(given) => options.intrinsics = Some(intrinsics(&given)?),
     }
     if options.camera_size.is_some() && options.intrinsics.is_none() && options.camera_file.is_none() {
-        return Err(Refusal("camera_size needs the camera that it is of: state camera".into()));
+        return Err(InputError("camera_size needs the camera that it is of: state camera".into()));
     }
     options.check()?;
     let [focal, baseline, doffs] = ["focal", "baseline", "doffs"].map(|name| take(words, name, NUMBER));
@@ -80,13 +80,13 @@ pub(crate) fn refuse_others(left: &Words) -> Result<()> {
     let Some(name) = left.keys().next() else { return Ok(()) };
     let accepted = "sensor, unit, camera, camera_size, rectified, scale, depth_scale, ray_distance, disparity, focal, baseline, \
                     doffs, missing, valid_range, noise_table, swap_bytes, member, raw_size, raw_type";
-    Err(Refusal(format!("`{name}` says nothing of how a map is read; accepted: {accepted}")))
+    Err(InputError(format!("`{name}` says nothing of how a map is read; accepted: {accepted}")))
 }
 
 /// The camera of four numbers.
 fn intrinsics(given: &Value) -> Result<Intrinsics> {
     let accepted = "[fx, fy, cx, cy] in pixels, or what stands in a camera file";
     let numbers = <[f64; 4] as serde::Deserialize>::deserialize(given);
-    let [fx, fy, cx, cy] = numbers.map_err(|_| Refusal(format!("camera is {given}; accepted: {accepted}")))?;
+    let [fx, fy, cx, cy] = numbers.map_err(|_| InputError(format!("camera is {given}; accepted: {accepted}")))?;
     Ok(Intrinsics::new(fx, fy, cx, cy)?)
 }

@@ -1,8 +1,8 @@
 //! What a page shows of a map: planes, their outlines, and the ground.
 
 use crate::clock::Clock;
+use crate::error::{InputError, Result};
 use crate::finder::Finder;
-use crate::refusal::{Refusal, Result};
 use depthplanes::ground::GroundFinder;
 use depthplanes::outline::Outliner;
 use depthplanes_io::Frame;
@@ -13,18 +13,18 @@ use serde_json::json;
 const LEAST_HOLE_PX: usize = 100;
 
 /// Finds what a page shows beside planes; it reuses its memory.
-pub(crate) struct Painter {
+pub(crate) struct View {
     outliner: Outliner,
     ground: GroundFinder,
 }
 
-impl Default for Painter {
+impl Default for View {
     fn default() -> Self {
-        Painter { outliner: Outliner::default().min_hole_px(LEAST_HOLE_PX), ground: GroundFinder::default() }
+        View { outliner: Outliner::default().min_hole_px(LEAST_HOLE_PX), ground: GroundFinder::default() }
     }
 }
 
-impl Painter {
+impl View {
     /// The message of a frame, as the live page gets it.
     ///
     /// # Errors
@@ -36,7 +36,7 @@ impl Painter {
         name: &str,
         mut clock: Clock,
     ) -> Result<Message> {
-        let named = |error: Refusal| Refusal(format!("{name}: {}", error.0));
+        let named = |error: InputError| InputError(format!("{name}: {}", error.0));
         finder.find(frame, &mut |stage| clock.ends(stage)).map_err(named)?;
         let notes =
             finder.report(frame, name, |report| frame.warnings.iter().chain(report.notes).cloned().collect::<Vec<_>>());

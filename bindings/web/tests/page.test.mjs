@@ -107,12 +107,12 @@ test("labels of recorded maps in every format are the program's", { skip }, () =
 test("a frame of 640 x 480 takes less than 25 ms in the page", { skip }, t => withPage(async page => {
     await open(page, join(DATA, "gt_real/lpvo_hall_125.depth.png"));
     const times = await page.evaluate(async () => {
-        const { desk, state } = window.depthplanes;
+        const { client, state } = window.depthplanes;
         const times = [];
         for (let round = 0; round < 30; round++) {
             // Another parameter each time, so that nothing is remembered; it changes no plane of this map.
             const words = { "min-pixels": 100 + round % 2 };
-            const { stages } = await desk.ask({ ask: "detect", map: state.map, words }, state.bytes);
+            const { stages } = await client.ask({ ask: "detect", map: state.map, words }, state.bytes);
             times.push(stages.filter(([name]) => name !== "read").reduce((sum, [, ms]) => sum + ms, 0));
         }
         return times.sort((a, b) => a - b);
@@ -224,7 +224,7 @@ test("a file that is dropped is shown", () => withPage(async page => {
 
 test("the page stays free while planes are found", () => withPage(async page => {
     const longest = await page.evaluate(async () => {
-        const { desk, state } = window.depthplanes;
+        const { client, state } = window.depthplanes;
         let [longest, before, goes] = [0, performance.now(), true];
         const beat = new MessageChannel();
         beat.port1.onmessage = () => {
@@ -234,7 +234,7 @@ test("the page stays free while planes are found", () => withPage(async page => 
         };
         beat.port2.postMessage(0);
         const start = performance.now();
-        while (performance.now() - start < 1000) await desk.ask({ ask: "detect", map: state.map, words: { method: "ransac" } });
+        while (performance.now() - start < 1000) await client.ask({ ask: "detect", map: state.map, words: { method: "ransac" } });
         goes = false;
         return longest;
     });

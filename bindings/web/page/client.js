@@ -3,7 +3,7 @@
 import { decode } from "../../../crates/depthplanes-serve/page/src/message.js";
 
 /** Starts it from the text of its script. */
-export class Desk {
+export class Client {
     constructor(script) {
         this.waiting = new Map();
         this.number = 0;
@@ -17,13 +17,13 @@ export class Desk {
         this.worker.onerror = event => this.stop(event.message || "the browser did not start it");
     }
 
-    /** The answer to a question, a head with its arrays; fails with words. */
-    ask(question, bytes) {
+    /** The answer to a request, a head with its arrays; fails with words. */
+    ask(request, bytes) {
         if (this.stopped) return Promise.reject(new Error(this.stopped));
         return new Promise((resolve, reject) => {
             const number = this.number++;
             this.waiting.set(number, { resolve, reject });
-            this.worker.postMessage({ number, question, bytes });
+            this.worker.postMessage({ number, request, bytes });
         });
     }
 

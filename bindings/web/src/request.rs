@@ -1,11 +1,11 @@
-//! Questions of JavaScript, and their answers as messages.
+//! Requests of JavaScript, and their answers as messages.
 
 use crate::clock::Clock;
+use crate::error::{InputError, Result};
 use crate::finder::Finder;
 use crate::map::MapOf;
 use crate::reading::{Words, reading, refuse_others};
-use crate::refusal::{Refusal, Result};
-use crate::shown::Painter;
+use crate::shown::View;
 use crate::tables::tables;
 use depthplanes::ValueKind;
 use depthplanes_io::outputs::{OUTPUTS, json_line};
@@ -14,9 +14,9 @@ use depthplanes_io::{Frame, Pixels, ReadOptions};
 use serde::Deserialize;
 use serde_json::json;
 
-/// A question's head.
+/// A request's head.
 #[derive(Deserialize)]
-struct Question {
+struct Request {
     ask: Ask,
     /// What the bytes behind the head are.
     map: Option<MapOf>,
@@ -48,14 +48,14 @@ enum Ask {
     Camera,
 }
 
-/// The desk at which one question after the other is answered.
+/// The session at which one request after the other is answered.
 #[derive(Default)]
-pub(crate) struct Desk {
-    question: Vec<u8>,
-    answer: Vec<u8>,
+pub(crate) struct Session {
+    request: Vec<u8>,
+    response: Vec<u8>,
     known: Option<Known>,
     finder: Option<Finder>,
-    painter: Painter,
+    view: View,
 }
 
 /// The last map.
@@ -66,37 +66,37 @@ struct Known {
     frame: Frame,
 }
 
-impl Desk {
-    /// Room for a question; `None` if there is no memory.
+impl Session {
+    /// Room for a request; `None` if there is no memory.
     pub(crate) fn room(&mut self, bytes: usize) -> Option<&mut [u8]> {
-        self.question.clear();
-        self.question.try_reserve_exact(bytes).ok()?;
-        self.question.resize(bytes, 0);
-        Some(&mut self.question)
+        self.request.clear();
+        self.request.try_reserve_exact(bytes).ok()?;
+        self.request.resize(bytes, 0);
+        Some(&mut self.request)
     }
 
     /// The last answer.
-    pub(crate) fn answered(&self) -> &[u8] {
-        &self.answer
+    pub(crate) fn response(&self) -> &[u8] {
+        &self.response
     }
 
-    /// Answers the question that stands in the room; returns the length of the answer. A refusal is a head with `error`.
-    pub(crate) fn answer(&mut self) -> usize {
-        self.answer = Vec::new(); // before another one is made
-        let message = self.message().unwrap_or_else(|Refusal(error)| Message::new(json!({"error": error})));
-        self.answer = message.into_bytes();
-        self.answer.len()
+    /// Answers the request that stands in the room; returns the length of the answer. A refusal is a head with `error`.
+    pub(crate) fn respond(&mut self) -> usize {
+        self.response = Vec::new(); // before another one is made
+        let message = self.message().unwrap_or_else(|InputError(error)| Message::new(json!({"error": error})));
+        self.response = message.into_bytes();
+        self.response.len()
     }
 
     fn message(&mut self) -> Result<Message> {
-        let (head, bytes) = parts(&self.question)?;
-        let question: Question = serde_json::from_slice(head)?;
-        if let Ask::Tables = question.ask {
+        let (head, bytes) = parts(&self.request)?;
+        let request: Request = serde_json::from_slice(head)?;
+        if let Ask::Tables = request.ask {
             return Ok(Message::new(tables()));
         }
         let mut clock = Clock::new();
-        let (options, left) = question.stated()?;
-        let reads_alone = matches!(question.ask, Ask::Read | Ask::Camera);
+        let (options, left) = request.stated()?;
+        let reads_alone = matches!(request.ask, Ask::Read | Ask::Camera);
         if reads_alone {
             refuse_others(&left)?;
         }
@@ -104,23 +104,23 @@ impl Desk {
             Some(finder) if reads_alone || finder.is_for(&left) => finder,
             finder => finder.insert(Finder::new(&left)?),
         };
-        let Some(map) = question.map else { return Ok(Message::default()) };
+        let Some(map) = request.map else { return Ok(Message::default()) };
         let name = map.name();
         let frame = known(&mut self.known, map, options, bytes)?;
         clock.ends("read");
-        match question.ask {
+        match request.ask {
             Ask::Tables | Ask::Check => Ok(Message::default()),
             Ask::Read => Ok(read(frame)),
             Ask::Camera => Ok(camera_message(frame.width, frame.height, &frame.sensor).unwrap_or_default()),
             Ask::Detect => detected(finder, frame, &name, clock),
             Ask::Explain(at) => Ok(Message::new(finder.explain(frame, &name, at)?)),
             Ask::Encode(output, extension) => encoded(finder, frame, &name, &output, &extension),
-            Ask::Show => self.painter.message(finder, frame, &name, clock),
+            Ask::Show => self.view.message(finder, frame, &name, clock),
         }
     }
 }
 
-impl Question {
+impl Request {
     /// How the map is read, and the words that are left for the finder.
     fn stated(&self) -> Result<(ReadOptions, Words)> {
         let mut left = self.words.clone();
@@ -129,18 +129,18 @@ impl Question {
         if own != ReadOptions::default() {
             let text = "the frame was read already, and knows its sensor, camera and unit; accepted: a Detector without these \
                         for frames, or the array for this one";
-            return Err(Refusal(text.into()));
+            return Err(InputError(text.into()));
         }
         Ok((reading(&mut words.clone())?, left))
     }
 }
 
-/// Head and bytes of a question.
-fn parts(question: &[u8]) -> Result<(&[u8], &[u8])> {
-    let parts = question
+/// Head and bytes of a request.
+fn parts(request: &[u8]) -> Result<(&[u8], &[u8])> {
+    let parts = request
         .split_first_chunk()
         .and_then(|(length, rest)| rest.split_at_checked(u32::from_le_bytes(*length) as usize));
-    parts.ok_or_else(|| Refusal("a question that ends before its head does".into()))
+    parts.ok_or_else(|| InputError("a request that ends before its head does".into()))
 }
 
 /// The frame of a map: the last one, if it is the same.
