@@ -1,6 +1,6 @@
 //! How planes are looked for: words of JavaScript as a detector, with its memory.
 
-use crate::error::{InputError, Result};
+use crate::error::{InputError, Result, check_memory};
 use crate::reading::{Words, take};
 use depthplanes::methods::{self, MethodInfo};
 use depthplanes::{Coplanar, Detection, Detector, Error};
@@ -61,8 +61,7 @@ impl Finder {
     /// What the library says of the map; too little memory.
     pub(crate) fn find(&mut self, frame: &Frame, observer: &mut (dyn FnMut(&'static str) + Send)) -> Result<()> {
         if frame.width * frame.height > self.pixels {
-            let [used, reserved] = memory::of_detection(self.method, frame.width, frame.height);
-            memory::check(used, reserved)?;
+            check_memory(memory::of_detection(self.method, frame.width, frame.height))?;
             self.pixels = frame.width * frame.height;
         }
         self.detector.set_sensor(frame.sensor);

@@ -1,8 +1,8 @@
 //! The map that a request is about.
 
-use crate::error::Result;
+use crate::error::{Result, check_memory};
 use depthplanes::scene::Spec;
-use depthplanes_io::{Frame, ReadOptions, frame_of_samples, memory};
+use depthplanes_io::{Frame, ReadOptions, frame_of_samples};
 use serde::Deserialize;
 
 /// What the bytes of a request are.
@@ -35,17 +35,17 @@ impl MapOf {
         let needed = 6 * bytes.len() as u64; // as for files: `memory::check_of_file`
         match self {
             MapOf::File(name) => {
-                memory::check(needed, needed)?;
+                check_memory([needed; 2])?;
                 Ok(depthplanes_io::decode(bytes, name, options)?)
             }
             MapOf::Array { sample, width, height } => {
-                memory::check(needed, needed)?;
+                check_memory([needed; 2])?;
                 Ok(frame_of_samples(bytes, sample, (*width, *height), options)?)
             }
             MapOf::Scene(spec) => {
                 let spec = spec.parse::<Spec>()?;
                 let needed = 64 * (spec.width * spec.height) as u64;
-                memory::check(needed, needed)?;
+                check_memory([needed; 2])?;
                 let mut frame = Frame::from(spec.frame()?);
                 if *options != ReadOptions::default() {
                     let note = "a synthetic scene knows its own unit and camera: what is stated of reading is not used";
