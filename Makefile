@@ -37,13 +37,10 @@ PY := .venv/bin/python
 PEERS := .venv-peers/ready
 CARGO_FUZZ := target/tools/bin/cargo-fuzz
 
-# The library as a module for WebAssembly, which is no member of the workspace.
-WASM := --manifest-path tests/wasm/Cargo.toml
-
 say = @printf '\n== %s\n' '$(1)'
 
 .NOTPARALLEL:
-.PHONY: help demo dist try-deb deny test lint fmt format clippy rust-tests rustdoc packages package targets browser oracles python wheel c install-c bench bench-planar bench-track ablate tables peers results golden stress fuzz clean
+.PHONY: help demo dist try-deb deny test lint fmt format clippy rust-tests rustdoc packages package targets browser oracles python wheel npm c install-c bench bench-planar bench-track ablate tables peers results golden stress fuzz clean
 
 help: ## List the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -63,22 +60,21 @@ deny: ## Check licences, sources and advisories of all dependencies
 
 # Two at a time, which does not show the figures that `make oracles` prints.
 test: ORACLE_FLAGS = --numprocesses 2
-test: lint rust-tests rustdoc packages targets browser oracles python c ## Run every check: formatting, lints, all tests, documentation, packages, other targets, the page in a browser, Python oracles, the Python package, the C library
+test: lint rust-tests rustdoc packages targets browser oracles python c ## Run every check: formatting, lints, all tests, documentation, packages, other targets, the pages in a browser, Python oracles, the Python package, the C library
 	$(call say,all checks passed)
 
 lint: format clippy ## Check formatting and lints, change nothing
 
 format:
 	$(call say,formatting)
-	@if scripts/component rustfmt; then { $(CARGO) fmt --all --check && $(CARGO) fmt $(WASM) --check; } || { \
+	@if scripts/component rustfmt; then $(CARGO) fmt --all --check || { \
 		echo 'error: the code is not formatted; run `make fmt`' >&2; exit 1; }; fi
 
 clippy:
 	$(call say,lints)
 	@if scripts/component clippy; then \
 		$(CARGO) clippy --workspace --all-targets --features depthplanes/serde,depthplanes-io/exr,depthplanes-cli/parquet -- -D warnings; \
-		$(CARGO) clippy --package depthplanes --no-default-features -- -D warnings; \
-		$(CARGO) clippy $(WASM) --target-dir "$${CARGO_TARGET_DIR:-target}" --locked -- -D warnings; fi
+		$(CARGO) clippy --package depthplanes --no-default-features -- -D warnings; fi
 
 rust-tests:
 	$(call say,tests)
@@ -107,8 +103,8 @@ targets: ## Check that the library compiles for WebAssembly, 64-bit ARM and 32-b
 	$(call say,other targets)
 	@scripts/targets
 
-browser: ## Build the live page anew and compare it, and use it in headless Chromium
-	$(call say,the live page in a browser)
+browser: ## Build the live page anew and compare it, and the npm package with its page; use all of them in headless Chromium and node
+	$(call say,the pages in a browser)
 	@scripts/browser
 
 oracles: $(VENV)
@@ -129,6 +125,9 @@ c: $(VENV) ## Build the C library, install it into a folder, and run the example
 install-c: ## Install the C library with its headers below PREFIX (/usr/local)
 	$(CARGO) build --release --package depthplanes-c
 	@scripts/install-c '$(PREFIX)'
+
+npm: ## Make the package for JavaScript and the page that needs no server into dist
+	@scripts/npm
 
 bench: $(VENV) ## Measure against cc3d and OpenCV; writes benchmarks/record/MACHINE/DATE.csv
 	CARGO_TARGET_DIR=target $(CARGO) build --release --package depthplanes --examples
@@ -184,10 +183,10 @@ fuzz: $(CARGO_FUZZ) ## Fuzz every reader for FUZZ_SECONDS each (30)
 			-max_total_time=$(FUZZ_SECONDS) -rss_limit_mb=1024 -max_len=8192 -print_final_stats=1; done
 
 fmt: ## Format the code
-	@if scripts/component rustfmt; then $(CARGO) fmt --all && $(CARGO) fmt $(WASM); else exit 1; fi
+	@if scripts/component rustfmt; then $(CARGO) fmt --all; else exit 1; fi
 
 clean: ## Remove everything that was made
-	rm -rf target .venv .venv-peers .venv-python .venv-maturin out dist fuzz/target tests/wasm/target tests/browser/node_modules crates/depthplanes-serve/page/node_modules
+	rm -rf target .venv .venv-peers .venv-python .venv-maturin out dist fuzz/target tests/browser/node_modules bindings/web/node_modules crates/depthplanes-serve/page/node_modules
 	find . -name __pycache__ -o -name .pytest_cache | xargs rm -rf
 
 # Anew when the packages change, or when an earlier attempt did not finish.

@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const LOCKS: [&str; 3] = ["Cargo.lock", "fuzz/Cargo.lock", "tests/wasm/Cargo.lock"];
+const LOCKS: [&str; 2] = ["Cargo.lock", "fuzz/Cargo.lock"];
 
 /// Crates that nobody keeps up, which others still ask for: the advisory that says so. See https://rustsec.org.
 const UNMAINTAINED: [(&str, &str); 19] = [

@@ -304,6 +304,7 @@ fn links_of_the_docs_lead_to_files() {
         "docs/planes-schema.md",
         "docs/python.md",
         "docs/c.md",
+        "docs/browser.md",
     ];
     for document in WITH_COMMANDS.into_iter().chain(others) {
         let path = root().join(document);

@@ -185,6 +185,7 @@ fn no_file_knows_one_that_knows_it() {
         ("depthplanes-rerun", 5),
         ("../bindings/python", 10),
         ("../bindings/c", 7),
+        ("../bindings/web", 5),
     ];
     for (name, least) in crates {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name).join("src");

@@ -92,6 +92,7 @@ fn unsafe_code_stands_in_the_kernels_alone() {
     assert_eq!(files_with("bindings/python/src", &["unsafe "]), ["array.rs"]); // memory that NumPy and Rust share
     let border = ["border.rs", "detector.rs", "map.rs", "tables.rs"]; // texts, pixels and arrays of C
     assert_eq!(files_with("bindings/c/src", &["unsafe "]), border);
+    assert_eq!(files_with("bindings/web/src", &["unsafe "]), ["clock.rs"]); // the clock of JavaScript, which is declared
 }
 
 #[test]
@@ -129,6 +130,7 @@ fn nobody_but_tests_and_benchmarks_asks_for_stages_by_themselves() {
         "crates/depthplanes-rerun",
         "bindings/python",
         "bindings/c",
+        "bindings/web",
     ] {
         let folder = &format!("{krate}/src");
         assert_eq!(files_with(folder, &["::internals"]), [""; 0], "{folder}");

@@ -21,6 +21,7 @@ pub mod memory;
 pub mod noise_table;
 pub mod outputs;
 mod packed;
+pub mod page;
 pub mod presets;
 mod ray_distance;
 pub mod read;

@@ -4,6 +4,7 @@ use crate::recent::Recent;
 use depthplanes::Detector;
 use depthplanes::explanation::Verdict;
 use depthplanes::methods::MethodInfo;
+use depthplanes_io::outputs::explanation_record;
 use serde_json::{Value, json};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use tokio::sync::oneshot;
@@ -47,16 +48,10 @@ fn explain(method: &'static MethodInfo, question: &Question) -> depthplanes::Res
     let mut detector = Detector::new(method.of_values(values)?)?.sensor(video.frame.sensor);
     let mut why = detector.explain(video.frame.view()?, *at)?;
     name_by_id(&mut why.verdict, ids);
-    let verdict = json!({"kind": why.verdict.kind(), "text": why.verdict.to_string()});
-    let [findings, suggestions] = [json!(why.findings), json!(why.suggestions)];
-    Ok(json!({
-        "type": "explanation",
-        "serial": serial,
-        "at": at,
-        "verdict": verdict,
-        "findings": findings,
-        "suggestions": suggestions,
-    }))
+    let mut answer = explanation_record(&video.name, method, values, &why);
+    answer["type"] = "explanation".into();
+    answer["serial"] = (*serial).into();
+    Ok(answer)
 }
 
 /// The page knows planes by their ids.

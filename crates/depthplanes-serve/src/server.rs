@@ -19,7 +19,7 @@ use axum::http::StatusCode;
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{any, get, post};
-use depthplanes::methods::{Param, ParamKind};
+use depthplanes_io::page::parameter_record;
 use depthplanes_video::Source;
 use serde_json::{Value, json};
 use std::net::{SocketAddr, TcpListener};
@@ -144,24 +144,7 @@ fn hello(config: &Config) -> Value {
         "version": env!("CARGO_PKG_VERSION"),
         "source": config.name,
         "method": {"name": config.method.name, "about": config.method.about},
-        "parameters": config.method.params.iter().map(parameter).collect::<Vec<_>>(),
+        "parameters": config.method.params.iter().map(parameter_record).collect::<Vec<_>>(),
         "upload_bytes": config.limits.upload_bytes,
-    })
-}
-
-fn parameter(of: &Param) -> Value {
-    json!({
-        "name": of.name,
-        "default": of.default,
-        "min": of.min,
-        "max": (of.max < f64::MAX).then_some(of.max),
-        "kind": match of.kind {
-            ParamKind::Whole => "whole",
-            ParamKind::OddOrOff => "odd",
-            _ => "real",
-        },
-        "unit": of.unit,
-        "meaning": of.meaning,
-        "accepted": of.accepted(),
     })
 }

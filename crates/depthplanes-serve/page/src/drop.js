@@ -1,9 +1,10 @@
-// Files that are dragged in, or opened: sent to the server, which reads them.
+// Files that are dragged in, or opened.
 
 export class Drop {
-    /** `fail` is told why a file was not read, and null before it is known; `limit()` how many bytes the server accepts. */
-    constructor({ zone, button, input }, limit, fail) {
-        Object.assign(this, { limit, fail });
+    /** `read` takes the file and fails with words; `fail` is told these, and null before it is known; `limit()` is how many bytes
+     * are accepted. */
+    constructor({ zone, button, input }, limit, fail, read) {
+        Object.assign(this, { limit, fail, read });
         const over = event => {
             if (!event.dataTransfer?.types.includes("Files")) return;
             event.preventDefault();
@@ -13,7 +14,7 @@ export class Drop {
         for (const type of ["dragover", "dragleave", "drop"]) document.addEventListener(type, over);
         button.onclick = () => input.click();
         input.onchange = () => {
-            this.send(input.files);
+            this.send([...input.files]);
             input.value = "";
         };
     }
@@ -27,10 +28,9 @@ export class Drop {
             return this.fail(`${file.name}: ${(file.size / 2 ** 20).toFixed(0)} MB, and ${this.limit() / 2 ** 20} MB are accepted`);
         }
         try {
-            const answer = await fetch(`/file/${encodeURIComponent(file.name)}`, { method: "POST", body: file });
-            if (!answer.ok) this.fail(await answer.text() || `${file.name}: ${answer.statusText}`);
-        } catch {
-            this.fail(`${file.name}: the server did not answer`);
+            await this.read(file);
+        } catch (error) {
+            this.fail(error.message);
         }
     }
 }

@@ -27,13 +27,20 @@ const view2d = new View2d(find("view2d"), at => {
     view2d.at = at;
     view2d.redraw();
 });
-const view3d = new View3d(find("view3d"));
+const view3d = new View3d(find("view3d"), "start with --preset SENSOR, --intrinsics FX,FY,CX,CY or --camera FILE");
 const pick = new Pick(find("pixel"), choose, ask);
 const sliders = new Sliders(find("parameters"), (name, value) => setParameters("set", { name, value }), () => setParameters("reset"));
 const timeline = new Timeline(document.querySelector("footer"), ask);
 const stages = new Stages(find("stages"), find("total"));
 globalThis.depthplanes = Object.assign(page, { view2d, view3d }); // for the browser's console, and for tests
-new Drop({ zone: find("drop"), button: find("open"), input: find("file") }, () => page.hello?.upload_bytes ?? Infinity, banner);
+new Drop({ zone: find("drop"), button: find("open"), input: find("file") }, () => page.hello?.upload_bytes ?? Infinity, banner, upload);
+
+/** Sends a file to the server, which reads it. */
+async function upload(file) {
+    const answer = await fetch(`/file/${encodeURIComponent(file.name)}`, { method: "POST", body: file }).catch(() => null);
+    if (!answer) throw new Error(`${file.name}: the server did not answer`);
+    if (!answer.ok) throw new Error(await answer.text() || `${file.name}: ${answer.statusText}`);
+}
 
 function receive(message) {
     ({ hello: begin, state: showState, camera: of => view3d.setCamera(of), frame: wait, explanation: of => pick.answer(of), refused: refuse })[message.type]?.(message);

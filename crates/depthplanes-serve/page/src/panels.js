@@ -15,7 +15,7 @@ const swatch = plane => {
 /** How steep a plane is: against the floor, or else against the picture. */
 export const tilt = plane => plane.slope_deg ?? (plane.normal ? Math.acos(Math.min(1, -plane.normal[2])) * 180 / Math.PI : NaN);
 
-/** The table of planes; `choose` is told the id of the row that is clicked. */
+/** The table of planes; `choose` is told the id of the row that is clicked, or entered. */
 export function showPlanes(element, { planes, unit }, chosen, choose) {
     const scroll = element.scrollTop;
     const head = [["id", "text"], ["class", "text"], ["depth"], ["tilt"], ["area"], ["pixels"]];
@@ -31,15 +31,19 @@ export function showPlanes(element, { planes, unit }, chosen, choose) {
         ];
         const row = node("tr", { className: plane.id === chosen ? "chosen" : "" }, ...cells);
         row.dataset.id = plane.id;
+        row.tabIndex = 0;
         return row;
     });
     const table = node("table", {}, node("thead", {}, node("tr", {}, ...heads)), node("tbody", {}, ...rows));
-    element.onclick = event => {
+    element.onclick = element.onkeydown = event => {
         const row = event.target.closest("tbody tr");
-        if (row) choose(Number(row.dataset.id));
+        if (!row || (event.key && event.key !== "Enter")) return;
+        choose(Number(row.dataset.id));
     };
+    const focused = element.contains(document.activeElement) && document.activeElement.dataset.id;
     element.replaceChildren(planes.length ? table : node("p", { className: "muted", textContent: "No plane in this frame." }));
     element.scrollTop = scroll;
+    if (focused) element.querySelector(`[data-id="${focused}"]`)?.focus({ preventScroll: true });
 }
 
 export function showGround(element, { ground }) {

@@ -1,10 +1,10 @@
-// Picking a pixel: its plane is chosen, and where there is none the server explains why.
+// Picking a pixel: its plane is chosen, and where there is none it is asked why.
 
 import { showPixel } from "./panels.js";
 import { node } from "./sliders.js";
 
 export class Pick {
-    /** `choose` is told the id of the plane, or null; `ask` asks the server. */
+    /** `choose` is told the id of the plane, or null; `ask` asks for what is not known here. */
     constructor(element, choose, ask) {
         Object.assign(this, { element, choose, ask });
         this.clear();
@@ -50,7 +50,7 @@ export class Pick {
         if (id !== this.id) this.choose(this.id = id);
     }
 
-    /** The server's answer. */
+    /** The answer to `explain`. */
     answer({ at, verdict, findings, suggestions, error }) {
         if (!this.at || at.some((x, i) => x !== this.at[i]) || !this.explained) return;
         this.missed = Boolean(error);
@@ -63,12 +63,13 @@ export class Pick {
     }
 
     suggestion({ parameters, plane_pixels, planes_before, planes_after }) {
-        const values = parameters.map(([name, value]) => `${name} ${value}`).join(", ");
+        const wanted = Object.entries(parameters);
+        const values = wanted.map(([name, value]) => `${name} ${value}`).join(", ");
         const title = `The pixel is then on a plane of ${plane_pixels} pixels; ${planes_after} planes instead of ${planes_before}.`;
         const button = node("button", { textContent: `Try ${values}`, title });
         button.onclick = () => {
             this.explained = null;
-            parameters.forEach(([name, value]) => this.ask("set", { name, value }));
+            wanted.forEach(([name, value]) => this.ask("set", { name, value }));
         };
         return button;
     }
@@ -81,10 +82,9 @@ function planeAt(frame, [u, v]) {
 
 function finding({ stage, subject, quantities, outcome, refuses }) {
     const parts = quantities.map(({ name, value, unit, limit }) => {
-        const [kind, bound] = limit ? Object.entries(limit)[0] : [];
-        const words = { AtMost: "at most", AtLeast: "at least", MoreThan: "more than" }[kind];
+        const words = limit?.kind.replace("_", " ");
         const of = unit === "standard deviations" ? "sd" : unit;
-        return `${name} ${value === null ? "–" : Number(value.toPrecision(3))}${of ? ` ${of}` : ""}${words ? ` (${words} ${Number(bound.toPrecision(3))})` : ""}`;
+        return `${name} ${value === null ? "–" : Number(value.toPrecision(3))}${of ? ` ${of}` : ""}${words ? ` (${words} ${Number(limit.value.toPrecision(3))})` : ""}`;
     });
     const text = `${stage} · ${subject}: ${[...parts, outcome].filter(Boolean).join(", ")}`;
     return node("li", { textContent: text, className: refuses ? "no" : "" });

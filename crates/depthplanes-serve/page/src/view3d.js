@@ -21,7 +21,9 @@ const LEAST_FOR_ID = 0.004;
 const FAN_M = 0.012;
 
 export class View3d {
-    constructor(element) {
+    /** `remedy` says how to state the camera of a map. */
+    constructor(element, remedy) {
+        this.remedy = remedy;
         this.stage = element.querySelector(".stage");
         this.hint = element.querySelector(".hint");
         Object.assign(this, { floor: true, obstacles: true, sectors: true, chosen: null, mode: "planes" });
@@ -73,7 +75,7 @@ export class View3d {
         if (!this.renderer) return;
         this.frame = frame;
         const metric = frame.camera !== null && frame.unit === "m";
-        this.say(metric ? "" : "Points in space need the unit of the map and its camera: start with --preset SENSOR, --intrinsics FX,FY,CX,CY or --camera FILE.");
+        this.say(metric ? "" : `Points in space need the unit of the map and its camera: ${this.remedy}.`);
         this.scene.visible = metric;
         if (metric) {
             this.place(frame.ground, anew);

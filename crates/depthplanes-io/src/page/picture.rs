@@ -1,4 +1,4 @@
-//! The map as the page gets it: depth as whole numbers between the least and the greatest, and no more pixels than a page
+//! The map as a page gets it: depth as whole numbers between the least and the greatest, and no more pixels than a page
 //! shows.
 
 use depthplanes::{AnyView, DepthView, Pixel, ValueKind, with_view};
@@ -6,23 +6,23 @@ use depthplanes::{AnyView, DepthView, Pixel, ValueKind, with_view};
 /// Most pixels that are sent; of larger maps every second, third, .. column and row is.
 const MOST_PIXELS: usize = 640 * 480;
 
-/// Depth as the page gets it.
+/// Depth as a page gets it.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Picture {
-    pub(crate) width: usize,
-    pub(crate) height: usize,
+pub(super) struct Picture {
+    pub(super) width: usize,
+    pub(super) height: usize,
     /// Columns and rows of the map from one pixel to the next.
-    pub(crate) step: usize,
+    pub(super) step: usize,
     /// 0 where nothing was measured; else the value is `low + (code - 1) * scale`.
-    pub(crate) codes: Vec<u16>,
-    pub(crate) low: f64,
-    pub(crate) scale: f64,
+    pub(super) codes: Vec<u16>,
+    pub(super) low: f64,
+    pub(super) scale: f64,
     /// Whether values are metres of depth; else they are those of the map.
-    pub(crate) is_metric: bool,
+    pub(super) is_metric: bool,
 }
 
 impl Picture {
-    pub(crate) fn new(view: AnyView<'_>, kind: ValueKind) -> Self {
+    pub(super) fn new(view: AnyView<'_>, kind: ValueKind) -> Self {
         with_view!(&view, view => Self::typed(view, kind))
     }
 
@@ -60,12 +60,12 @@ impl Picture {
 }
 
 /// Columns and rows from one pixel that is sent to the next.
-pub(crate) fn step(width: usize, height: usize) -> usize {
+pub(super) fn step(width: usize, height: usize) -> usize {
     (1..).find(|step| width.div_ceil(*step) * height.div_ceil(*step) <= MOST_PIXELS).expect("some step is enough")
 }
 
 /// What is sent of a value for each pixel of the map, row by row.
-pub(crate) fn thinned<T: Copy>(values: &[T], width: usize, step: usize) -> Vec<T> {
+pub(super) fn thinned<T: Copy>(values: &[T], width: usize, step: usize) -> Vec<T> {
     if step == 1 {
         return values.to_vec();
     }

@@ -4,29 +4,46 @@
 //! multiple of 8, and each array is padded to one. The head's `arrays` say of each its `type` (`u8`, `u16`, `f32`, all little
 //! endian), where it starts (`at`, bytes after the head), and how many numbers it has (`length`).
 
-use axum::body::Bytes;
 use serde_json::{Map, Value, json};
 
 /// Where arrays start.
 const ALIGNED: usize = 8;
 
 /// A message while it is made.
-#[derive(Default)]
-pub(crate) struct Arrays {
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Message {
+    head: Map<String, Value>,
     listed: Map<String, Value>,
     bytes: Vec<u8>,
 }
 
-impl Arrays {
-    pub(crate) fn add_u8(&mut self, name: &str, numbers: &[u8]) {
+impl Message {
+    /// Of a head that is an object; of another value it is empty.
+    pub fn new(head: Value) -> Self {
+        Message::default().with(head)
+    }
+
+    /// The same with the fields of an object in its head.
+    #[must_use]
+    pub fn with(mut self, fields: Value) -> Self {
+        if let Value::Object(fields) = fields {
+            self.head.extend(fields);
+        }
+        self
+    }
+
+    /// Adds an array of bytes.
+    pub fn add_u8(&mut self, name: &str, numbers: &[u8]) {
         self.add(name, "u8", numbers, |number| [*number]);
     }
 
-    pub(crate) fn add_u16(&mut self, name: &str, numbers: &[u16]) {
+    /// Adds an array of 16-bit numbers.
+    pub fn add_u16(&mut self, name: &str, numbers: &[u16]) {
         self.add(name, "u16", numbers, |number| number.to_le_bytes());
     }
 
-    pub(crate) fn add_f32(&mut self, name: &str, numbers: &[f32]) {
+    /// Adds an array of floating-point numbers.
+    pub fn add_f32(&mut self, name: &str, numbers: &[f32]) {
         self.add(name, "f32", numbers, |number| number.to_le_bytes());
     }
 
@@ -39,13 +56,13 @@ impl Arrays {
         }
     }
 
-    /// The whole message. The head is an object.
-    pub(crate) fn message(self, mut head: Value) -> Bytes {
-        head["arrays"] = self.listed.into();
-        let mut text = head.to_string().into_bytes();
+    /// The whole message.
+    pub fn into_bytes(mut self) -> Vec<u8> {
+        self.head.insert("arrays".into(), self.listed.into());
+        let mut text = Value::from(self.head).to_string().into_bytes();
         text.resize((text.len() + 4).next_multiple_of(ALIGNED) - 4, b' ');
         let length = (text.len() as u32).to_le_bytes();
-        [&length, text.as_slice(), &self.bytes].concat().into()
+        [&length, text.as_slice(), &self.bytes].concat()
     }
 }
 
@@ -55,14 +72,14 @@ mod tests {
 
     #[test]
     fn arrays_start_where_the_head_says() {
-        let mut arrays = Arrays::default();
-        arrays.add_u8("marks", &[1, 2, 3]);
-        arrays.add_f32("rays", &[0.5, -2.0]);
-        let message = arrays.message(json!({"type": "frame"}));
+        let mut message = Message::new(json!({"type": "frame"}));
+        message.add_u8("marks", &[1, 2, 3]);
+        message.add_f32("rays", &[0.5, -2.0]);
+        let message = message.into_bytes();
         let length = u32::from_le_bytes(message[..4].try_into().unwrap()) as usize;
         let head: Value = serde_json::from_slice(&message[4..4 + length]).unwrap();
         let start = 4 + length;
-        assert_eq!(start % ALIGNED, 0);
+        assert_eq!((start % ALIGNED, &head["type"]), (0, &json!("frame")));
         assert_eq!(head["arrays"]["marks"], json!({"type": "u8", "at": 0, "length": 3}));
         let at = start + head["arrays"]["rays"]["at"].as_u64().unwrap() as usize;
         assert_eq!(at % ALIGNED, 0);

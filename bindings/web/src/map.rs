@@ -1,0 +1,58 @@
+//! The map that a request is about.
+
+use crate::error::{Result, check_memory};
+use depthplanes::scene::Spec;
+use depthplanes_io::{Frame, ReadOptions, frame_of_samples};
+use serde::Deserialize;
+
+/// What the bytes of a request are.
+#[derive(Debug, Deserialize, PartialEq)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum MapOf {
+    /// Those of a file of that name.
+    File(String),
+    /// Numbers of an array, by the name of their type.
+    Array { sample: String, width: usize, height: usize },
+    /// None: a synthetic scene.
+    Scene(String),
+}
+
+impl MapOf {
+    /// What the map is called.
+    pub(crate) fn name(&self) -> String {
+        match self {
+            MapOf::File(name) => name.clone(),
+            MapOf::Array { .. } => "array".into(),
+            MapOf::Scene(spec) => format!("scene:{spec}"),
+        }
+    }
+
+    /// The map as a frame.
+    ///
+    /// # Errors
+    /// Those of the readers and of scenes.
+    pub(crate) fn frame(&self, bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
+        let needed = 6 * bytes.len() as u64; // as for files: `memory::check_of_file`
+        match self {
+            MapOf::File(name) => {
+                check_memory([needed; 2])?;
+                Ok(depthplanes_io::decode(bytes, name, options)?)
+            }
+            MapOf::Array { sample, width, height } => {
+                check_memory([needed; 2])?;
+                Ok(frame_of_samples(bytes, sample, (*width, *height), options)?)
+            }
+            MapOf::Scene(spec) => {
+                let spec = spec.parse::<Spec>()?;
+                let needed = 64 * (spec.width * spec.height) as u64;
+                check_memory([needed; 2])?;
+                let mut frame = Frame::from(spec.frame()?);
+                if *options != ReadOptions::default() {
+                    let note = "a synthetic scene knows its own unit and camera: what is stated of reading is not used";
+                    frame.warnings.push(note.into());
+                }
+                Ok(frame)
+            }
+        }
+    }
+}

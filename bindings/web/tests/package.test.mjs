@@ -1,0 +1,196 @@
+// The npm package under node: the labels, documents and words of the program.
+
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { cp, readFile, writeFile } from "node:fs/promises";
+import { join } from "node:path";
+import { test } from "node:test";
+import { WRITERS } from "./formats.mjs";
+import { BUILT, assertDocument, dp, labelsOf, native, program, recorded, skip, vga, withFolder, written } from "./support.mjs";
+
+const ROOT = join(import.meta.dirname, "../../..");
+const CAMERA = [580, 580, 319.5, 239.5];
+
+for (const method of ["planar", "ngaf", "ransac"]) {
+    test(`${method}: labels of recorded maps are those of the program`, { skip }, () => withFolder(async folder => {
+        const { files } = await written(folder, "png", await recorded());
+        const expected = await native(folder, files, ["--method", method]);
+        const detector = new dp.Detector({ method });
+        for (const { name, stem, bytes } of files) {
+            const { labels, planes } = detector.detect(dp.read(bytes, name));
+            assert.deepEqual(labels, labelsOf(expected[stem]), name);
+            assert.equal(planes.length, labels.reduce((most, label) => Math.max(most, label), 0), name);
+        }
+    }));
+}
+
+test("scenes of floats, with noise and without, have the program's labels", () => withFolder(async folder => {
+    for (const scene of ["room:sensor=kinect", "boxes:sensor=clean,size=320x240", "stairs:sensor=tof_white"]) {
+        program(["detect", `scene:${scene}`, "--labels", "labels.png"], folder);
+        const { labels } = new dp.Detector().detect(dp.scene(scene));
+        assert.deepEqual(labels, labelsOf(await readFile(join(folder, "labels.png"))), scene);
+        assert.ok(labels.some(label => label > 1), scene);
+    }
+}));
+
+test("files are those of the program, whatever the output", () => withFolder(async folder => {
+    const { depth, width, height } = dp.scene("room:sensor=kinect");
+    const [, write] = WRITERS.npy;
+    const bytes = write({ depth, width, height });
+    await writeFile(join(folder, "room.npy"), bytes);
+    const found = new dp.Detector().detect(dp.read(bytes, "room.npy", { camera: CAMERA }));
+    const words = ["detect", "room.npy", `--intrinsics=${CAMERA}`];
+    assertDocument(found.encode("planes", "json"), program([...words, "--json"], folder));
+    assert.deepEqual(found.record, JSON.parse(Buffer.from(found.encode("planes", "json"))));
+    for (const { name, extensions } of dp.tables().outputs.filter(({ name }) => name !== "curved-labels")) {
+        for (const extension of extensions) {
+            program([...words, `--${name}`, `made.${extension}`], folder);
+            const expected = await readFile(join(folder, `made.${extension}`));
+            const made = found.encode(name, extension);
+            extension === "json" ? assertDocument(made, expected) : assert.ok(expected.equals(made), `${name}.${extension}`);
+        }
+    }
+    const explained = JSON.parse(program(["explain", "room.npy", "--at", "12,300", `--intrinsics=${CAMERA}`, "--json"], folder));
+    assert.deepEqual(found.explain(12, 300), explained);
+}));
+
+test("an array of each type is read as the program reads such a file", () => {
+    const scene = dp.scene("boxes:sensor=clean_mm,size=160x120");
+    const labels = (Type, options, scale = 1) => {
+        const array = Type.from(scene.depth, value => Type === BigInt64Array ? BigInt(value) : value * scale);
+        return new dp.Detector(options).detect(array, 160, 120).labels;
+    };
+    const expected = labels(Uint16Array);
+    assert.ok(expected.some(label => label > 1));
+    for (const Type of [Int16Array, Uint32Array, Int32Array, BigInt64Array]) assert.deepEqual(labels(Type), expected, Type.name);
+    for (const Type of [Float32Array, Float64Array]) assert.deepEqual(labels(Type, { unit: "mm" }), expected, Type.name);
+    assert.ok(labels(Uint8Array, {}, 1 / 40).some(label => label > 0));
+    // A part of a larger buffer, at an odd place.
+    const wide = new Uint16Array(scene.depth.length + 3);
+    wide.set(scene.depth, 3);
+    assert.deepEqual(new dp.Detector().detect(wide.subarray(3), 160, 120).labels, expected);
+});
+
+test("no answer depends on the one before, nor on what is written to the array since", () => {
+    const detector = new dp.Detector({ camera: CAMERA });
+    const other = new dp.Detector({ method: "ngaf" });
+    const { depth, width, height } = dp.scene("room:sensor=kinect");
+    const first = detector.detect(depth, width, height);
+    const document = first.encode("planes", "json");
+    other.detect(depth, width, height);
+    depth.fill(0);
+    assert.equal(detector.detect(depth, width, height).planes.length, 0);
+    assert.deepEqual(first.encode("planes", "json"), document);
+    assert.equal(first.explain(320, 400).verdict.kind, "plane");
+});
+
+test("what is wrong is said in the program's words", () => withFolder(async folder => {
+    const flat = new Uint16Array(64 * 48).fill(1000);
+    const detector = new dp.Detector();
+    const refused = (act, words) => assert.throws(act, error => {
+        assert.equal(error.name, "InputError");
+        assert.match(error.message, words);
+        return true;
+    });
+    refused(() => new dp.Detector({ method: "plane" }), /no method `plane`; there are: planar, ngaf/);
+    refused(() => new dp.Detector({ sensor: "kinect9" }), /kinect9.*kinect1/);
+    refused(() => new dp.Detector({ unit: "miles" }), /miles.*millimetre/);
+    refused(() => new dp.Detector({ min_pixels: -5 }), /min-pixels.*-5.*a whole number from/);
+    refused(() => new dp.Detector({ min_pixels: "many" }), /min-pixels is "many"; accepted: a number/);
+    refused(() => new dp.Detector({ min_pixels: NaN }), /min_pixels is NaN; accepted: a finite number/);
+    refused(() => new dp.Detector({ theta: 1 }), /`theta`.*min-pixels/);
+    refused(() => new dp.Detector({ camera: [580, 580] }), /camera is \[580,580\]; accepted: \[fx, fy, cx, cy\]/);
+    refused(() => new dp.Detector({ camera: "no camera" }), /camera/);
+    refused(() => new dp.Detector({ method: "ngaf", curved: true }), /curved.*planar/);
+    refused(() => new dp.Detector({ camera_size: [640, 480] }), /camera_size needs the camera/);
+    refused(() => detector.detect([1, 2], 2, 1), /the map is an Array; accepted: a typed array/);
+    refused(() => detector.detect(flat, 64, 47), /the array has 3072 numbers; accepted: 64 x 47 = 3008/);
+    refused(() => detector.detect(flat, 64), /height is undefined; accepted: a whole number/);
+    refused(() => detector.detect(flat, 64, 48).explain(64, 0), /pixel 64,0 is outside of the map/);
+    refused(() => detector.detect(flat, 64, 48).encode("cloud", "ply"), /intrinsics/);
+    refused(() => detector.detect(flat, 64, 48).encode("labels", "jpg"), /png or .npy/);
+    refused(() => dp.read(new Uint8Array(10), "map.png", { sensr: "kinect1" }), /`sensr` says nothing.*sensor/);
+    refused(() => new dp.Detector({ unit: "mm" }).detect(dp.scene("room:size=64x48")), /read already/);
+    refused(() => dp.scene("ballroom"), /ballroom.*room/);
+    for (const [name, text] of [["letter.txt", "Dear Sir"], ["cut.png", "\x89PNG\r\n\x1a\n"], ["photo.jpg", "\xff\xd8\xff\xe0"]]) {
+        const bytes = Buffer.from(text, "latin1");
+        await writeFile(join(folder, name), bytes);
+        let said;
+        assert.throws(() => program(["detect", name], folder), error => (said = error.stderr, true));
+        refused(() => dp.read(bytes, name), new RegExp(`^${name}: `));
+        assert.throws(() => dp.read(bytes, name), error => said.includes(error.message) || assert.fail(`${said} ${error.message}`));
+    }
+}));
+
+test("parameters are those of the tables, and have types", async () => {
+    const types = await readFile(join(BUILT, "package/options.d.ts"), "utf8");
+    const [, union] = /type ParameterName = ([^;]*);/.exec(types);
+    const named = [...union.matchAll(/"(\w+)"/g)].map(([, name]) => name);
+    const known = new Set(dp.methods().flatMap(({ parameters }) => parameters.map(({ name }) => name.replaceAll("-", "_"))));
+    assert.deepEqual(named.sort(), [...known].sort());
+    for (const { name, parameters } of dp.methods()) {
+        const values = Object.fromEntries(parameters.map(({ name, default: usual }) => [name, usual]));
+        const { record } = new dp.Detector({ method: name, ...values }).detect(new Uint16Array(64).fill(9), 8, 8);
+        assert.deepEqual(record.parameters, values);
+    }
+});
+
+// Maps of each format are compared on the page.
+test("tables are the program's", () => {
+    for (const [command, rows] of [["presets", dp.sensors()], ["formats", dp.tables().formats], ["methods", dp.methods()], ["encodings", dp.tables().units]]) {
+        const text = program([command]);
+        for (const { name, about } of rows) assert.ok(text.includes(name) && text.includes(about), name);
+        assert.equal(text.trim().split("\n").length, rows.length + 1, command);
+    }
+    assert.deepEqual(dp.tables().formats.map(({ name }) => name).sort(), Object.keys(WRITERS).sort());
+});
+
+test("a map that is too large is refused, and the next one is not", () => {
+    const detector = new dp.Detector();
+    const side = 5000;
+    assert.throws(() => detector.detect(new Uint16Array(side * side).fill(1000), side, side), {
+        name: "InputError", message: /\d+ MB of memory are needed; accepted: what fits/,
+    });
+    assert.equal(detector.detect(new Uint16Array(4096).fill(1000), 64, 64).planes.length, 1);
+});
+
+/** Snippets of a page in a language, in their order. */
+async function snippets(page, language) {
+    const text = await readFile(join(ROOT, page), "utf8");
+    return [...text.matchAll(/^```(\w+)\n([^]*?)^```/gm)].filter(([, of]) => of === language).map(([, , code]) => code);
+}
+
+for (const page of ["docs/browser.md", "bindings/web/README.md"]) {
+    test(`the snippets of ${page} run, and their types are right`, () => withFolder(async folder => {
+        const code = (await snippets(page, "js")).join("\n");
+        assert.match(code, /await load\(\)/);
+        // Installed as it is packed, without a network.
+        const npm = words => execFileSync("npm", words, { cwd: folder, encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] });
+        const packed = npm(["pack", join(BUILT, "package"), "--silent"]).trim();
+        npm(["install", `./${packed}`, "--offline", "--no-audit", "--no-fund", "--silent"]);
+        const { depth, width, height } = dp.scene("room:sensor=kinect");
+        await writeFile(join(folder, "depth.pgm"), WRITERS.pnm[1]({ depth, width, height }));
+        await writeFile(join(folder, "snippets.mjs"), code);
+        execFileSync(process.execPath, ["snippets.mjs"], { cwd: folder, stdio: "pipe" });
+        await writeFile(join(folder, "node.d.ts"), "declare module 'node:fs/promises' { export function readFile(name: string): Promise<Uint8Array>; export function writeFile(name: string, bytes: Uint8Array): Promise<void>; }\n");
+        await cp(join(folder, "snippets.mjs"), join(folder, "snippets.ts"));
+        const strict = ["--noEmit", "--strict", "--target", "es2022", "--module", "es2022", "--moduleResolution", "bundler", "--lib", "es2022,dom", "--types", ""];
+        execFileSync(join(ROOT, "bindings/web/node_modules/.bin/tsc"), [...strict, "node.d.ts", "snippets.ts"], { cwd: folder, stdio: "pipe" });
+    }));
+}
+
+test("a frame of 640 x 480 takes less than 25 ms", { skip }, async t => {
+    const frames = await vga();
+    const detector = new dp.Detector();
+    const times = [];
+    for (let round = 0; round < 5; round++) {
+        for (const frame of frames) {
+            const start = performance.now();
+            detector.detect(frame.depth, frame.width, frame.height);
+            if (round > 0) times.push(performance.now() - start);
+        }
+    }
+    const median = times.sort((a, b) => a - b)[times.length >> 1];
+    t.diagnostic(`${median.toFixed(2)} ms, median of ${times.length} detections of ${frames.length} recorded maps`);
+    assert.ok(median < 75, `${median} ms`); // machines of tests are busy
+});
