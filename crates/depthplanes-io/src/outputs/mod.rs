@@ -36,6 +36,7 @@ mod record;
 mod shade;
 mod staged;
 mod table;
+mod table_form;
 mod times;
 mod tinted;
 

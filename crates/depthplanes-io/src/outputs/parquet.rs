@@ -3,7 +3,7 @@
 use super::error::OutputError;
 use super::planes::{CSV_COLUMNS, array_rows};
 use super::staged::Staged;
-use super::table::{Form, Rows};
+use super::table_form::{Form, Rows};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;

@@ -57,6 +57,7 @@ impl Staged {
     }
 
     /// The name that it will have.
+    #[cfg(feature = "parquet")]
     pub(super) fn target(&self) -> &Path {
         &self.target
     }
