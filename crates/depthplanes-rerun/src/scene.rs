@@ -77,7 +77,8 @@ impl Scene {
             let marks = if ground.marks.is_empty() { unknown() } else { ground.marks.clone() };
             self.recording.log(GROUND, time, &segmentation(marks, ChannelDatatype::U8, size))?;
         }
-        let outlines = self.outliner.outline_seen_by(frame.detection, &frame.video.frame.sensor)?;
+        let shown = frame.tracks.labels_of(frame.detection);
+        let outlines = self.outliner.outline_labels(frame.detection, shown, &frame.video.frame.sensor)?;
         let planes: Vec<DrawnPlane<'_>> = drawn_planes(frame.detection, frame.tracks, outlines).collect();
         self.recording.log(OUTLINES, time, &rings(&planes))?;
         self.recording.log(NORMALS, time, &normals(&planes, frame, ground))

@@ -23,7 +23,7 @@ pub(crate) fn markers(
     sensor: &Sensor,
     header: &Header,
 ) -> Result<MarkerArray> {
-    let outlines = outliner.outline_seen_by(detection, sensor)?;
+    let outlines = outliner.outline_labels(detection, tracks.labels_of(detection), sensor)?;
     let mut markers = vec![Marker { header: header.clone(), action: Marker::DELETE_ALL, ..Marker::default() }];
     for plane in drawn_planes(detection, tracks, outlines) {
         markers.push(rings(&plane, marker(plane.id, header)));

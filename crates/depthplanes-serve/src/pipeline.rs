@@ -92,7 +92,7 @@ impl Pipeline {
         let pose = video.pose.as_ref().filter(|_| !self.ignores_poses);
         let tracks = self.tracker.track_with_map(video.frame.view()?, found.detection, sensor, pose)?;
         clock.ends("track");
-        let outlines = self.outliner.outline_seen_by(found.detection, sensor)?;
+        let outlines = self.outliner.outline_labels(found.detection, tracks.labels_of(found.detection), sensor)?;
         clock.ends("outlines");
         Ok(Found { detection: found.detection, outlines, tracks, ground: found.ground, stages: clock.stages })
     }

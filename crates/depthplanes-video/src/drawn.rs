@@ -44,7 +44,7 @@ impl<'a> DrawnPlane<'a> {
 /// detector.set_sensor(frame.frame.sensor);
 /// let found = detector.detect(frame.frame.view()?)?;
 /// let tracks = tracker.track(found, &frame.frame.sensor, None)?;
-/// let outlines = outliner.outline_seen_by(found, &frame.frame.sensor)?;
+/// let outlines = outliner.outline_labels(found, tracks.labels_of(found), &frame.frame.sensor)?;
 /// for plane in drawn_planes(found, tracks, outlines) {
 ///     let corners: usize = plane.rings_m().map(|ring| ring.len()).sum();
 ///     assert!(plane.id > 0 && corners >= 3);

@@ -107,9 +107,18 @@ impl Outliner {
     /// # Errors
     /// As [`Outliner::outline`].
     pub fn outline_seen_by(&mut self, detection: &Detection, sensor: &Sensor) -> Result<&Outlines> {
+        self.outline_labels(detection, &detection.labels, sensor)
+    }
+
+    /// As [`Outliner::outline_seen_by`], of another label image of the detection's planes, such as
+    /// [`Tracks::labels_of`](crate::track::Tracks::labels_of) gives.
+    ///
+    /// # Errors
+    /// As [`Outliner::outline`].
+    pub fn outline_labels(&mut self, detection: &Detection, labels: &[u16], sensor: &Sensor) -> Result<&Outlines> {
         let Outliner { tracer, holes, simplifier, huller, fitter, outlines } = self;
         outlines.clear(sensor);
-        tracer.trace(detection)?;
+        tracer.trace(detection, labels)?;
         holes.filter(&mut tracer.rings, &tracer.corners);
         for rings in tracer.rings.chunk_by(|a, b| a.label == b.label) {
             simplifier.simplify(rings, &tracer.corners, &mut tracer.keep);

@@ -86,8 +86,8 @@ struct Labels<'a> {
 }
 
 impl<'a> Labels<'a> {
-    fn of(detection: &'a Detection) -> Result<Self> {
-        let Detection { width, height, ref labels, .. } = *detection;
+    fn of(detection: &Detection, labels: &'a [u16]) -> Result<Self> {
+        let Detection { width, height, .. } = *detection;
         let fits = |side| (1..=MAX_SIDE).contains(&side);
         if !fits(width) || !fits(height) || width * height > MAX_PIXELS {
             return Err(Error::Size { width, height });
@@ -111,8 +111,8 @@ impl Tracer {
     ///
     /// # Errors
     /// [`Error::Size`], [`Error::Length`].
-    pub(super) fn trace(&mut self, detection: &Detection) -> Result<()> {
-        let map = Labels::of(detection)?;
+    pub(super) fn trace(&mut self, detection: &Detection, labels: &[u16]) -> Result<()> {
+        let map = Labels::of(detection, labels)?;
         self.start(&map, detection.planes.len());
         for (v, row) in map.labels.chunks_exact(map.width).enumerate() {
             let mut left = 0;

@@ -50,7 +50,8 @@ impl Scene {
     /// # Errors
     /// Those of outlines.
     pub(super) fn update(&mut self, frame: &Followed, time_ns: u64) -> Outcome<Vec<u8>> {
-        let outlines = self.outliner.outline_seen_by(&frame.detection, &frame.video.frame.sensor)?;
+        let labels = frame.tracks.labels_of(&frame.detection);
+        let outlines = self.outliner.outline_labels(&frame.detection, labels, &frame.video.frame.sensor)?;
         let (mut update, mut shown) = (Proto::default(), BTreeSet::new());
         for plane in drawn_planes(&frame.detection, &frame.tracks, outlines) {
             update = update.message(2, entity(&plane, time_ns));
