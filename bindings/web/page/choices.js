@@ -41,7 +41,7 @@ export class Choices {
 
     /** States something else of the map. */
     read(change) {
-        this.want({ reading: { ...this.state.reading, ...change } });
+        this.want(({ reading }) => ({ reading: { ...reading, ...change } }));
     }
 
     /** Shows what counts now. */

@@ -20,13 +20,13 @@ const NOTHING = { map: { scene: FIRST }, bytes: undefined, reading: {}, method: 
 const find = id => document.getElementById(id);
 /* global WORKER: the text of the worker's script */
 const client = new Client(WORKER);
-/** What is shown: `state` made `frame`; `wanted` comes next. */
-const page = { tables: null, state: NOTHING, wanted: null, isBusy: false, frame: null, serial: 0, cameras: 0, chosen: null };
+/** What is shown: `state` made `frame`; `due` is being found, `wanted` comes next. */
+const page = { tables: null, state: NOTHING, due: null, wanted: null, isBusy: false, frame: null, serial: 0, cameras: 0, chosen: null };
 
 const view2d = new View2d(find("view2d"), at => look(at));
 const view3d = new View3d(find("view3d"), "state them under “Map and method”");
 const pick = new Pick(find("pixel"), choose, ask);
-const setParameter = (name, value) => want({ parameters: { ...(page.wanted ?? page.state).parameters, [name]: value } });
+const setParameter = (name, value) => want(({ parameters }) => ({ parameters: { ...parameters, [name]: value } }));
 const sliders = new Sliders(find("parameters"), setParameter, () => want({ parameters: {} }));
 const stages = new Stages(find("stages"), find("total"));
 const choices = new Choices(find("choices"), want, banner);
@@ -44,9 +44,10 @@ function request(ask, { map, reading, method, parameters }) {
     return { ask, map, words: { ...stated(map, reading), ...(ask === "camera" ? {} : { method, ...parameters }) } };
 }
 
-/** Shows something else. While it is found only the newest wish waits. */
+/** Shows something else: changes of what was wished last, or a function that makes them of it. While it is found only the newest wish waits. */
 function want(change) {
-    page.wanted = { ...(page.wanted ?? page.state), ...change };
+    const last = page.wanted ?? page.due ?? page.state;
+    page.wanted = { ...last, ...(typeof change === "function" ? change(last) : change) };
     if (!page.isBusy) work();
 }
 
@@ -54,7 +55,7 @@ async function work() {
     page.isBusy = true;
     find("speed").classList.add("busy");
     while (page.wanted) {
-        const wanted = page.wanted;
+        const wanted = page.due = page.wanted;
         page.wanted = null;
         try {
             await show(wanted);
@@ -65,6 +66,7 @@ async function work() {
         }
     }
     find("speed").classList.remove("busy");
+    page.due = null;
     page.isBusy = false;
 }
 

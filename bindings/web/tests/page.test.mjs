@@ -104,6 +104,29 @@ test("labels of recorded maps in every format are the program's", { skip }, () =
     await plain.close();
 }));
 
+test("wishes that come while a map is read are all kept", { skip }, () => withPage(async page => {
+    // In one turn of the browser, so that nothing is shown in between.
+    const bytes = await readFile(join(DATA, "gt_real/felix_0.depth.png"));
+    await page.evaluate(async bytes => {
+        const transfer = new DataTransfer();
+        transfer.items.add(new File([new Uint8Array(bytes)], "felix.png"));
+        const set = (id, to) => {
+            const at = document.getElementById(id);
+            if (to instanceof FileList) at.files = to; else at.value = to;
+            at.dispatchEvent(new Event("change"));
+        };
+        set("file", transfer.files);
+        while (!window.depthplanes.isBusy) await new Promise(next => setTimeout(next, 0));
+        set("sensor", "kinect1");
+        set("unit", "millimetre");
+        set("method", "ngaf");
+    }, [...bytes]);
+    await until(async () => assert.ok(await page.evaluate(() => !window.depthplanes.isBusy)));
+    const { map, reading, method } = await page.evaluate(() => window.depthplanes.state);
+    assert.deepEqual([map.file, reading.sensor, reading.unit, method], ["felix.png", "kinect1", "millimetre", "ngaf"]);
+    assert.match(await page.locator("#frame-name").textContent(), /^felix\.png/);
+}));
+
 test("a frame of 640 x 480 takes less than 25 ms in the page", { skip }, t => withPage(async page => {
     await open(page, join(DATA, "gt_real/lpvo_hall_125.depth.png"));
     const times = await page.evaluate(async () => {
