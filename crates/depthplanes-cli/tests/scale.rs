@@ -69,6 +69,11 @@ fn parts_are_the_whole() {
         assert!(bench.run(&["detect", "maps", "--shard", wrong]).fails(2).contains("such as 1/4 to 4/4"), "{wrong}");
     }
     assert!(bench.run(&["detect", "maps", "--resume"]).fails(2).contains("--out-dir"));
+    // What is left out has no output but those of the folder and of the table.
+    for other in [&["--json"][..], &["--repeat", "3"], &["--overlay", "o.png"]] {
+        let error = bench.run(&[&RESUME[..], other].concat()).fails(2);
+        assert!(error.contains("cannot be used with"), "{error}");
+    }
 }
 
 #[test]

@@ -81,6 +81,7 @@ pub(super) fn running_flags() -> Vec<Arg> {
         flags::shard(),
         flags::switch("resume", "Go on where an earlier run of these words ended, by the manifest in --out-dir")
             .requires("out-dir")
+            .conflicts_with_all(OUTPUTS.iter().map(|output| output.name).chain(["json", "repeat"]))
             .long_help(
                 "Go on where an earlier run of these words ended: inputs that are done are left out, those that failed are \
                  tried again. --out-dir has the manifest, a line for each input, manifest.jsonl or manifest.I-of-N.jsonl",
