@@ -29,6 +29,8 @@ pub(crate) use clap_complete::Shell;
 pub(crate) use flags::{Inputs, Reading};
 pub(crate) use serve::Serve;
 pub(crate) use several::{Compare, Eval, Paper};
+#[cfg(test)]
+pub(crate) use track::TRACK_OUTPUTS;
 pub(crate) use track::Track;
 
 /// What the user wants.

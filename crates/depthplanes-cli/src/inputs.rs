@@ -2,6 +2,7 @@
 
 use crate::checksum::fnv;
 use crate::failure::{Failure, Outcome, note};
+use crate::manifest::Named;
 use depthplanes_io::formats::{FORMATS, left_out};
 use depthplanes_io::outputs::OUTPUTS;
 use depthplanes_video::natural;
@@ -21,6 +22,19 @@ pub(crate) enum Input {
     Standard,
     /// A synthetic scene: what follows `scene:`.
     Scene(String),
+}
+
+impl Named for Input {
+    fn name(&self) -> String {
+        self.name()
+    }
+
+    fn path(&self) -> Option<&Path> {
+        match self {
+            Input::File { path, .. } => Some(path),
+            _ => None,
+        }
+    }
 }
 
 impl Input {
@@ -46,12 +60,14 @@ impl Input {
         match self {
             Input::File { path, .. } => shortened(path.file_stem().unwrap_or_default().to_string_lossy().into_owned()),
             Input::Standard => "stdin".into(),
-            Input::Scene(spec) => {
-                let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-                shortened(format!("scene_{}", spec.chars().map(plain).collect::<String>()))
-            }
+            Input::Scene(spec) => shortened(format!("scene_{}", file_name_of(spec))),
         }
     }
+}
+
+/// Words as a file's name: what is no letter, digit, `-`, `_` or `.` becomes `_`.
+pub(crate) fn file_name_of(words: &str) -> String {
+    words.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect()
 }
 
 /// Bytes of the longest name that file systems take.
@@ -59,7 +75,7 @@ const LONGEST_NAME: usize = 255;
 
 /// A stem that leaves room for the names of all outputs: of a longer one the beginning and a checksum of all of it, so that
 /// names that begin alike stay apart.
-fn shortened(stem: String) -> String {
+pub(crate) fn shortened(stem: String) -> String {
     let most = LONGEST_NAME - 1 - OUTPUTS.iter().map(|output| output.file.len()).max().unwrap_or(0);
     if stem.len() <= most {
         return stem;

@@ -8,6 +8,8 @@ mod failure;
 mod folders;
 mod inputs;
 mod load;
+mod manifest;
+mod may_close;
 mod pairs;
 mod patience;
 mod pool;
@@ -17,6 +19,7 @@ mod shard;
 mod show;
 mod signals;
 mod table;
+mod tally;
 mod terminal;
 
 use std::ffi::OsString;

@@ -7,6 +7,7 @@ use depthplanes::outline::{Outliner, Outlines};
 use depthplanes::{Coplanar, Detection, Detector};
 use depthplanes_io::outputs::{Spread, Times};
 use depthplanes_io::{Frame, memory};
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// The stage that makes outlines, after the method's own.
@@ -47,6 +48,11 @@ impl Recipe {
         drop(method.with(given)?); // they are checked
         let threads = pool::threads(threads);
         Ok(Recipe { method, values, threads, coplanar: None, outlines: None, min_hole: 0, curved: false })
+    }
+
+    /// The value of each parameter by its name.
+    pub(crate) fn named_values(&self) -> BTreeMap<&'static str, f64> {
+        self.method.params.iter().map(|param| param.name).zip(self.values.iter().copied()).collect()
     }
 
     /// Several methods by name, each with those of the parameters given that it has.

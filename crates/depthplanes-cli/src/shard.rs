@@ -1,5 +1,6 @@
 //! A part of the inputs, for several runs or machines that do not know each other.
 
+use crate::failure::note;
 use std::fmt;
 use std::str::FromStr;
 
@@ -12,7 +13,7 @@ pub(crate) struct Shard {
 
 impl Shard {
     /// Its items: every `count`th one, so that all parts are as long and as hard.
-    pub(crate) fn of<T>(self, items: Vec<T>) -> Vec<T> {
+    fn of<T>(self, items: Vec<T>) -> Vec<T> {
         items.into_iter().skip(self.index - 1).step_by(self.count).collect()
     }
 }
@@ -33,6 +34,16 @@ impl fmt::Display for Shard {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}/{}", self.index, self.count)
     }
+}
+
+/// The part of the inputs that this run works on, which is empty where there are fewer inputs than parts.
+pub(crate) fn part<T>(shard: Shard, inputs: Vec<T>) -> Vec<T> {
+    let count = inputs.len();
+    let part = shard.of(inputs);
+    if part.is_empty() {
+        note(&format!("--shard {shard}: there are {count} inputs, and none for this part"));
+    }
+    part
 }
 
 #[cfg(test)]

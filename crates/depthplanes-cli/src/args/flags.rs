@@ -289,12 +289,19 @@ pub(super) fn switch(id: &'static str, help: &'static str) -> Arg {
 /// More inputs at once, threads, runs or rows than anybody means.
 const MOST: usize = 1_000_000;
 
+/// What a source of a video is.
+const SOURCE: &str = "A folder of maps, of TUM RGB-D, 7-Scenes or rosbag2; FILE.mcap or FILE.mcap:/topic; - for raw frames on standard \
+                      input; scene:SPEC for a synthetic camera";
+
 /// The source of a video.
 pub(super) fn source() -> Arg {
-    Arg::new("source").value_name("SOURCE").required(true).help(
-        "A folder of maps, of TUM RGB-D, 7-Scenes or rosbag2; FILE.mcap or FILE.mcap:/topic; - for raw frames on standard \
-         input; scene:SPEC for a synthetic camera",
-    )
+    Arg::new("source").value_name("SOURCE").required(true).help(SOURCE)
+}
+
+/// Those of several videos.
+pub(super) fn sources() -> Arg {
+    let several = "With --out-dir several of them, and patterns such as 'walks/*.mcap'";
+    source().num_args(1..).help(format!("{SOURCE}. {several}"))
 }
 
 /// A flag that takes a whole number from 1 to [`MOST`].
@@ -312,6 +319,12 @@ pub(super) fn shard() -> Arg {
         .value_name("I/N")
         .value_parser(|text: &str| text.parse::<Shard>())
         .help("Work on the Ith of N parts of the inputs, for N runs on as many machines")
+}
+
+/// Going on where an earlier run ended.
+pub(super) fn resume() -> Arg {
+    switch("resume", "Go on where an earlier run of these words ended, by the manifest in --out-dir")
+        .requires("out-dir")
 }
 
 /// A flag that takes a number of pixels, from 0.

@@ -79,8 +79,7 @@ pub(super) fn running_flags() -> Vec<Arg> {
     let all = [
         flags::count("jobs", "N").default_value("1").help("Inputs worked on at the same time"),
         flags::shard(),
-        flags::switch("resume", "Go on where an earlier run of these words ended, by the manifest in --out-dir")
-            .requires("out-dir")
+        flags::resume()
             .conflicts_with_all(OUTPUTS.iter().map(|output| output.name).chain(["json", "repeat"]))
             .long_help(
                 "Go on where an earlier run of these words ended: inputs that are done are left out, those that failed are \

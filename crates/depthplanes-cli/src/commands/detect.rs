@@ -1,18 +1,20 @@
 //! `depthplanes detect`: maps in, planes out as a table, as JSON or as files.
 
 mod done;
-mod manifest;
+mod print;
 mod table;
-mod tally;
 mod targets;
 
 use crate::args::Detect;
-use crate::failure::{Outcome, note};
+use crate::failure::Outcome;
 use crate::folders::make_folder;
 use crate::inputs::{self, Input};
+use crate::manifest::Manifest;
+use crate::may_close::MayClose;
 use crate::run::Recipe;
 use crate::runners::Runners;
-use crate::shard::Shard;
+use crate::shard;
+use crate::tally::Tally;
 use crate::terminal::plain;
 use crate::{load, pool, show};
 use depthplanes::noise::SensorNoise;
@@ -20,51 +22,18 @@ use depthplanes_io::outputs::{self, OUTPUTS, Output, Report, TableForm};
 use depthplanes_io::{ReadOptions, doubts, memory};
 use done::Done;
 use indicatif::{ProgressBar, ProgressStyle};
-use manifest::Manifest;
+use print::print;
 use serde_json::json;
-use std::collections::BTreeMap;
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::PathBuf;
 use table::Table;
-use tally::{Tally, print};
 use targets::{check_outputs, file_in, is_standard_output};
 
 pub(super) fn run(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     if wanted.out_dir.is_none() && wanted.outputs.is_empty() && wanted.table.is_none() {
         return run_to(wanted, out);
     }
-    run_to(wanted, &mut MayClose { out, is_closed: false })
-}
-
-/// Standard output beside files: whoever reads it may stop, and the files are written nevertheless.
-struct MayClose<'a> {
-    out: &'a mut dyn Write,
-    is_closed: bool,
-}
-
-impl MayClose<'_> {
-    fn unless_closed<T>(&mut self, instead: T, act: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> io::Result<T> {
-        if self.is_closed {
-            return Ok(instead);
-        }
-        match act(self.out) {
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
-                self.is_closed = true;
-                Ok(instead)
-            }
-            done => done,
-        }
-    }
-}
-
-impl Write for MayClose<'_> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.unless_closed(bytes.len(), |out| out.write(bytes))
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.unless_closed((), |out| out.flush())
-    }
+    run_to(wanted, &mut MayClose::new(out))
 }
 
 fn run_to(wanted: &Detect, out: &mut dyn Write) -> Outcome {
@@ -76,7 +45,7 @@ fn run_to(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     let all = inputs::expand(&wanted.inputs.words, wanted.inputs.recursive)?;
     let alone = all.len() == 1;
     let inputs = match wanted.shard {
-        Some(shard) => part(shard, all),
+        Some(shard) => shard::part(shard, all),
         None => all,
     };
     check_outputs(wanted, &inputs)?;
@@ -85,7 +54,10 @@ fn run_to(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     let form = wanted.table.as_deref().map(TableForm::of).transpose()?;
     let files = wanted.outputs.iter().filter(|(_, path)| !is_standard_output(path)).cloned().collect();
     let manifest = manifest_of(wanted, &recipe, form)?;
-    let due = due(&inputs, manifest.as_ref())?;
+    let due = match &manifest {
+        Some(manifest) => manifest.due(&inputs)?,
+        None => inputs.iter().collect(),
+    };
     let plan = Plan { wanted, files, recipe: &recipe, options, form, alone };
     let mut table = Table::begin(wanted, form)?;
     let bar = progress(due.len());
@@ -96,7 +68,7 @@ fn run_to(wanted: &Detect, out: &mut dyn Write) -> Outcome {
         move |at: usize| {
             let input = due[at];
             let outcome = plan.process(runners, input).map_err(|failure| failure.of_input(&input.name()));
-            manifest.map_or(Ok(()), |manifest| manifest.add(input, &outcome)).and(outcome)
+            manifest.map_or(Ok(()), |manifest| noted(manifest, input, &outcome)).and(outcome)
         }
     };
     pool::in_order(due.len(), wanted.jobs, work, |_, done| {
@@ -124,25 +96,15 @@ fn run_to(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     tally.outcome(due.len())
 }
 
-/// The part of the inputs that this run works on, which is empty where there are fewer inputs than parts.
-fn part(shard: Shard, inputs: Vec<Input>) -> Vec<Input> {
-    let count = inputs.len();
-    let part = shard.of(inputs);
-    if part.is_empty() {
-        note(&format!("--shard {shard}: there are {count} inputs, and none for this part"));
-    }
-    part
-}
-
 /// The manifest, if a run is to go on.
 fn manifest_of(wanted: &Detect, recipe: &Recipe, form: Option<TableForm>) -> Outcome<Option<Manifest>> {
     let Some(folder) = wanted.out_dir.as_ref().filter(|_| wanted.resume) else { return Ok(None) };
     make_folder(folder)?;
-    let params = recipe.method.params.iter().map(|param| param.name);
     let settings = json!({
+        "command": "detect",
         "version": env!("CARGO_PKG_VERSION"),
         "method": recipe.method.name,
-        "parameters": params.zip(&recipe.values).collect::<BTreeMap<_, _>>(),
+        "parameters": recipe.named_values(),
         "reading": wanted.reading.words,
         "noise-table": wanted.noise_table,
         "merge-coplanar": wanted.merge_coplanar,
@@ -156,19 +118,10 @@ fn manifest_of(wanted: &Detect, recipe: &Recipe, form: Option<TableForm>) -> Out
     Manifest::open(folder, wanted.shard, &settings).map(Some)
 }
 
-/// The inputs that are to be worked on.
-fn due<'a>(inputs: &'a [Input], manifest: Option<&Manifest>) -> Outcome<Vec<&'a Input>> {
-    let Some(manifest) = manifest else { return Ok(inputs.iter().collect()) };
-    let mut due = Vec::new();
-    for input in inputs {
-        if !manifest.is_done(input)? {
-            due.push(input);
-        }
-    }
-    if due.len() < inputs.len() {
-        note(&format!("--resume: {} of {} inputs are done already", inputs.len() - due.len(), inputs.len()));
-    }
-    Ok(due)
+/// Notes in the manifest what came of an input.
+fn noted(manifest: &Manifest, input: &Input, outcome: &Outcome<Done>) -> Outcome {
+    let entry = outcome.as_ref().map(Done::entry);
+    manifest.add(input, entry.as_ref().map_err(|failure| *failure))
 }
 
 /// What is done with each input.

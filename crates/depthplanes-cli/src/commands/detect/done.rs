@@ -1,5 +1,6 @@
 //! What one input of `detect` came to.
 
+use crate::manifest::{Counts, Entry};
 use std::path::PathBuf;
 
 /// What one input came to.
@@ -15,4 +16,12 @@ pub(super) struct Done {
     pub(super) planes: usize,
     /// What a camera would add; said once for many inputs.
     pub(super) hint: String,
+}
+
+impl Done {
+    /// What the manifest says of it.
+    pub(super) fn entry(&self) -> Entry<'_> {
+        let counts = Counts { planes: self.planes, frames: None, failed_frames: None };
+        Entry { counts, written: &self.written, rows: &self.rows }
+    }
 }

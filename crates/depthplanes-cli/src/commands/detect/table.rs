@@ -1,9 +1,9 @@
 //! One table of the planes of all inputs.
 
-use super::manifest::Manifest;
 use crate::args::Detect;
 use crate::failure::Outcome;
 use crate::inputs::Input;
+use crate::manifest::Manifest;
 use depthplanes_io::outputs::{TableFile, TableForm};
 use std::path::Path;
 

@@ -50,7 +50,7 @@ impl Finder {
         let ground = GroundFinder::default().camera_height_m(wanted.camera_height)?;
         let planes = depthplanes_video::Finder::new(recipe.detector());
         let finder = if wanted.floor { planes.with_ground(ground, wanted.up)? } else { planes };
-        Ok(Finder { finder, draws_ground: wanted.overlays.is_some() })
+        Ok(Finder { finder, draws_ground: wanted.draws() })
     }
 
     pub(super) fn search(&mut self, read: Read, dropped: u64) -> Searched {

@@ -1,5 +1,6 @@
 //! Results never go over what they are made from.
 
+use super::videos::Source;
 use crate::args::Track;
 use crate::failure::{Failure, Outcome};
 use depthplanes_io::outputs;
@@ -12,17 +13,17 @@ use std::path::{Path, PathBuf};
 ///
 /// # Errors
 /// What is wrong, and what to do.
-pub(super) fn check(wanted: &Track) -> Outcome {
+pub(super) fn check(wanted: &Track, source: &str) -> Outcome {
     if let Some(path) = wanted.out.as_deref().filter(|path| path.as_os_str() != "-") {
         outputs::check_folder(path)?;
     }
     let folders = [("--labels", &wanted.labels), ("--overlays", &wanted.overlays), ("--out", &wanted.out)];
     let given: Vec<(&str, PathBuf)> =
         folders.into_iter().filter_map(|(flag, path)| Some((flag, existing(path.as_deref()?)?))).collect();
-    let source = existing(path_and_topic(&wanted.source).0);
+    let place = existing(path_and_topic(source).0);
     for (flag, path) in &given {
-        if source.as_ref().is_some_and(|source| path.starts_with(source)) {
-            let (path, source) = (path.display(), &wanted.source);
+        if place.as_ref().is_some_and(|place| path.starts_with(place)) {
+            let path = path.display();
             return Err(Failure::request(format!(
                 "{flag}: {path} is there already and belongs to the source {source}, whose frames would be lost; \
                  accepted: a place outside of the source, or one that is new"
@@ -30,7 +31,7 @@ pub(super) fn check(wanted: &Track) -> Outcome {
         }
     }
     if let Some(path) = &wanted.out {
-        check_inputs(wanted, path)?;
+        check_inputs(wanted, source, path)?;
     }
     match (&wanted.labels, &wanted.overlays) {
         (Some(labels), Some(overlays))
@@ -42,13 +43,31 @@ pub(super) fn check(wanted: &Track) -> Outcome {
     }
 }
 
+/// Refuses a folder for the results of several videos that is one of them or lies in one, where it would be among the frames.
+pub(super) fn check_out_dir(folder: &Path, sources: &[Source]) -> Outcome {
+    // The folder itself may not be there yet.
+    let Some(place) =
+        folder.ancestors().map(|above| if above == Path::new("") { Path::new(".") } else { above }).find_map(existing)
+    else {
+        return Ok(());
+    };
+    let is_in = |source: &&Source| existing(path_and_topic(&source.word).0).is_some_and(|path| place.starts_with(path));
+    match sources.iter().find(is_in) {
+        Some(source) => Err(Failure::request(format!(
+            "--out-dir: {} lies in the source {}, where results would be among its frames; accepted: a place outside of the sources",
+            folder.display(),
+            source.word
+        ))),
+        None => Ok(()),
+    }
+}
+
 /// Refuses a file of results that is an input by another name: a link, or the file behind standard input.
-fn check_inputs(wanted: &Track, out: &Path) -> Outcome {
+fn check_inputs(wanted: &Track, source: &str, out: &Path) -> Outcome {
     let Ok(of_out) = out.metadata() else { return Ok(()) };
-    let source = path_and_topic(&wanted.source).0;
-    let named = [Some(source), wanted.reading.camera.as_deref(), wanted.noise_table.as_deref()];
+    let named = [Some(path_and_topic(source).0), wanted.reading.camera.as_deref(), wanted.noise_table.as_deref()];
     let named = named.into_iter().flatten().map(|path| (path.display().to_string(), path.metadata().ok()));
-    let piped = (wanted.source == "-").then(|| ("standard input".to_string(), standard_input()));
+    let piped = (source == "-").then(|| ("standard input".to_string(), standard_input()));
     let mut inputs = named.chain(piped);
     let is_it = |(_, input): &(String, Option<Metadata>)| input.as_ref().is_some_and(|input| is_same(input, &of_out));
     match inputs.find(is_it) {

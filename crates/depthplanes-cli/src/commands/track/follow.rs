@@ -22,6 +22,11 @@ pub(super) struct Followed {
 }
 
 impl Followed {
+    /// The highest id of the planes that are seen; ids are given in turn, from 1.
+    pub(super) fn last_id(&self) -> u32 {
+        self.detection.planes.iter().filter_map(|plane| self.tracks.id_of(plane.label)).max().unwrap_or(0)
+    }
+
     /// As outputs take it.
     pub(super) fn tracked(&self) -> Tracked<'_> {
         let Followed { video, detection, tracks, ground, dropped, .. } = self;

@@ -1,6 +1,6 @@
 //! What comes of a tracked video: lines or messages of each frame, label images, pictures, a table in the end.
 //!
-//! One file for each output; [`Writer`] hands every frame to those that are wanted.
+//! One file for each output; [`OUTPUTS`] lists them, and [`Writer`] hands every frame to those that are wanted.
 
 mod images;
 mod lines;
@@ -13,32 +13,42 @@ mod table;
 use super::follow::Followed;
 use crate::args::Track;
 use crate::failure::{Failure, Outcome};
-use output::Output;
+use output::{Output, OutputInfo};
 use std::io::Write;
 use std::path::Path;
 
+/// The outputs that a video can have in a folder.
+const OUTPUTS: &[OutputInfo] = &[lines::LINES, mcap::RECORDING, images::LABELS, images::OVERLAYS];
+
 /// Writes one frame after the other.
-pub(super) struct Writer<'a> {
-    outputs: Vec<Box<dyn Output + 'a>>,
+pub(super) struct Writer {
+    outputs: Vec<Box<dyn Output>>,
 }
 
-impl<'a> Writer<'a> {
-    /// Makes the folders and files.
+impl Writer {
+    /// The files and folders of one video, as they are named, and a table of its planes on standard output.
     ///
     /// # Errors
     /// What the machine says.
-    pub(super) fn new(wanted: &'a Track) -> Outcome<Self> {
-        let mut outputs: Vec<Box<dyn Output + 'a>> = Vec::new();
+    pub(super) fn new(wanted: &Track) -> Outcome<Self> {
+        let mut outputs: Vec<Box<dyn Output>> = Vec::new();
         outputs.extend(wanted.out.as_deref().map(of_name).transpose()?);
-        if let Some(folder) = &wanted.labels {
-            outputs.push(Box::new(images::Labels::new(folder)?));
-        }
-        if let Some(folder) = &wanted.overlays {
-            outputs.push(Box::new(images::Overlays::new(folder)?));
+        for (info, folder) in [(images::LABELS, &wanted.labels), (images::OVERLAYS, &wanted.overlays)] {
+            outputs.extend(folder.as_deref().map(info.open).transpose()?);
         }
         if !wanted.out.as_deref().is_some_and(is_standard) {
             outputs.push(Box::new(table::Table::default()));
         }
+        Ok(Writer { outputs })
+    }
+
+    /// Outputs in a folder, under the names of the table.
+    ///
+    /// # Errors
+    /// What the machine says.
+    pub(super) fn in_folder(folder: &Path, only: &[&'static str]) -> Outcome<Self> {
+        let wanted = OUTPUTS.iter().filter(|info| only.is_empty() || only.contains(&info.name));
+        let outputs = wanted.map(|info| (info.open)(&folder.join(info.file))).collect::<Outcome<_>>()?;
         Ok(Writer { outputs })
     }
 
@@ -76,12 +86,20 @@ fn of_name(path: &Path) -> Outcome<Box<dyn Output>> {
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
     Ok(match extension.as_deref() {
         _ if is_standard(path) => Box::new(lines::Lines::standard()),
-        None | Some("jsonl" | "ndjson") => Box::new(lines::Lines::new(path)?),
-        Some("mcap") => Box::new(mcap::Recording::new(path)?),
+        None | Some("jsonl" | "ndjson") => (lines::LINES.open)(path)?,
+        Some("mcap") => (mcap::RECORDING.open)(path)?,
         Some(other) => {
             let accepted =
                 ".jsonl for a JSON line for each frame, .mcap for a recording for Foxglove, - for standard output";
             return Err(Failure::request(format!("--out: {} ends in .{other}; accepted: {accepted}", path.display())));
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_command_line_knows_all_outputs() {
+        assert_eq!(super::OUTPUTS.iter().map(|info| info.name).collect::<Vec<_>>(), crate::args::TRACK_OUTPUTS);
+    }
 }

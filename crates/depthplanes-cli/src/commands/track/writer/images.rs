@@ -1,6 +1,6 @@
 //! A label image, or a picture, for each frame.
 
-use super::output::{Output, machine};
+use super::output::{Output, OutputInfo, machine};
 use crate::commands::track::follow::Followed;
 use crate::failure::Outcome;
 use depthplanes_io::outputs::{self, grey16_png, tracked_png};
@@ -17,14 +17,11 @@ fn made(folder: &Path) -> Outcome<PathBuf> {
     Ok(folder.into())
 }
 
-/// Label images.
-pub(super) struct Labels(PathBuf);
+pub(super) const LABELS: OutputInfo =
+    OutputInfo { name: "labels", file: "labels", open: |folder| Ok(Box::new(Labels(made(folder)?))) };
 
-impl Labels {
-    pub(super) fn new(folder: &Path) -> Outcome<Self> {
-        made(folder).map(Labels)
-    }
-}
+/// Label images.
+struct Labels(PathBuf);
 
 impl Output for Labels {
     fn write(&mut self, frame: &Followed, _: &mut dyn Write) -> Outcome {
@@ -34,14 +31,11 @@ impl Output for Labels {
     }
 }
 
-/// Pictures: of the planes, or of the ground where it was found.
-pub(super) struct Overlays(PathBuf);
+pub(super) const OVERLAYS: OutputInfo =
+    OutputInfo { name: "overlays", file: "overlays", open: |folder| Ok(Box::new(Overlays(made(folder)?))) };
 
-impl Overlays {
-    pub(super) fn new(folder: &Path) -> Outcome<Self> {
-        made(folder).map(Overlays)
-    }
-}
+/// Pictures: of the planes, or of the ground where it was found.
+struct Overlays(PathBuf);
 
 impl Output for Overlays {
     fn write(&mut self, frame: &Followed, _: &mut dyn Write) -> Outcome {

@@ -1,12 +1,15 @@
 //! A line of JSON for each frame.
 
-use super::output::{Output, machine};
+use super::output::{Output, OutputInfo, machine};
 use crate::commands::track::follow::Followed;
 use crate::failure::Outcome;
 use depthplanes_video::failed_record;
 use std::fs::File;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+pub(super) const LINES: OutputInfo =
+    OutputInfo { name: "lines", file: "planes.jsonl", open: |path| Ok(Box::new(Lines::new(path)?)) };
 
 /// A file of lines, or standard output.
 pub(super) struct Lines {
@@ -16,7 +19,7 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    pub(super) fn new(path: &std::path::Path) -> Outcome<Self> {
+    fn new(path: &Path) -> Outcome<Self> {
         let file = File::create(path).map_err(|error| machine(path, error))?;
         Ok(Lines { file: Some((file, path.into())), whole: 0 })
     }

@@ -4,7 +4,7 @@
 //! descriptions, `assets/foxglove.binpb`, are those of the Python package foxglove-schemas-protobuf (MIT, by Foxglove);
 //! `tests/oracles/test_mcap.py` compares and renews them. The planes' record is JSON, the same as in `.jsonl`.
 
-use super::output::{Output, machine};
+use super::output::{Output, OutputInfo, machine};
 use super::scene::{self, Scene};
 use crate::commands::track::follow::Followed;
 use crate::failure::Outcome;
@@ -13,6 +13,9 @@ use depthplanes_video::mcap::{Topic, Writer};
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+
+pub(super) const RECORDING: OutputInfo =
+    OutputInfo { name: "mcap", file: "planes.mcap", open: |path| Ok(Box::new(Recording::new(path)?)) };
 
 /// Seconds from a frame to the next one, where the source has no times.
 const STEP_NS: u64 = 1_000_000_000 / 30;
@@ -46,7 +49,7 @@ const CAMERA: u16 = 3;
 const TRANSFORM: u16 = 4;
 
 /// A file in MCAP.
-pub(super) struct Recording {
+struct Recording {
     path: PathBuf,
     /// None once it is finished.
     writer: Option<Writer<File>>,
@@ -56,7 +59,7 @@ pub(super) struct Recording {
 }
 
 impl Recording {
-    pub(super) fn new(path: &Path) -> Outcome<Self> {
+    fn new(path: &Path) -> Outcome<Self> {
         let writer = File::create(path).and_then(|file| Writer::new(file, &TOPICS));
         let writer = writer.map_err(|error| machine(path, error))?;
         Ok(Recording { path: path.into(), writer: Some(writer), scene: Scene::default(), time_ns: None })

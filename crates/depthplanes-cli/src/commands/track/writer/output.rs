@@ -5,6 +5,16 @@ use crate::failure::{Failure, Outcome};
 use std::io::{self, Write};
 use std::path::Path;
 
+/// A kind of output, which goes to a file or a folder.
+pub(super) struct OutputInfo {
+    /// Its name on the command line.
+    pub(super) name: &'static str,
+    /// Its file or folder among the results of a video.
+    pub(super) file: &'static str,
+    /// Makes the file or folder.
+    pub(super) open: fn(&Path) -> Outcome<Box<dyn Output>>,
+}
+
 /// An output; `out` is standard output. Errors are what the machine says, unless something else is said.
 pub(super) trait Output {
     /// Writes a frame.

@@ -40,10 +40,10 @@ impl Table {
 
 impl Output for Table {
     fn write(&mut self, frame: &Followed, _: &mut dyn Write) -> Outcome {
+        self.last_id = self.last_id.max(frame.last_id());
         for plane in &frame.detection.planes {
             let Some(id) = frame.tracks.id_of(plane.label) else { continue };
             let index = frame.video.index;
-            self.last_id = self.last_id.max(id);
             let summary = self.summaries.entry(id).or_insert(Summary { first: index, ..Summary::default() });
             summary.last = index;
             summary.frames += 1;

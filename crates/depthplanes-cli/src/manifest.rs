@@ -1,12 +1,10 @@
 //! What came of each input, kept beside the results: a run that ended, however it ended, goes on where it was.
 //!
 //! The manifest is a file of lines. The first says what was asked for; each other one stands for an input, and is written in one
-//! piece when the files of the input have their names. So of what a killed run has begun only inputs without a line are done
+//! piece when the input is done. So of what a killed run has begun only inputs without a line, or without their outputs, are done
 //! again, under the same names.
 
-use super::done::Done;
-use crate::failure::{Failure, Outcome};
-use crate::inputs::Input;
+use crate::failure::{Failure, Outcome, note};
 use crate::shard::Shard;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -25,12 +23,13 @@ const SCHEMA: &str = "depthplanes.manifest/1";
 struct Line {
     input: String,
     status: Status,
-    /// What the input was then: bytes, and nanoseconds since 1970 of its last change; none of what is no file.
+    /// What the input was then: bytes, and nanoseconds since 1970 of its last change; of a folder those of all files in it. None
+    /// of what is neither.
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<(u64, u64)>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    planes: Option<usize>,
-    /// The files that it has in the folder of results.
+    #[serde(flatten)]
+    counts: Option<Counts>,
+    /// The files and folders that it has in the folder of results.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     outputs: Vec<PathBuf>,
     /// What it adds to the table.
@@ -38,6 +37,35 @@ struct Line {
     rows: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
+}
+
+/// How much was found.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Counts {
+    pub(crate) planes: usize,
+    /// Of a video.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) frames: Option<u64>,
+    /// Those of a video that could not be read.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) failed_frames: Option<u64>,
+}
+
+/// What came of an input that is done.
+pub(crate) struct Entry<'a> {
+    pub(crate) counts: Counts,
+    /// Its files and folders.
+    pub(crate) written: &'a [PathBuf],
+    /// What it adds to the table.
+    pub(crate) rows: &'a str,
+}
+
+/// What an input is known by.
+pub(crate) trait Named {
+    /// Its name, as given.
+    fn name(&self) -> String;
+    /// Its file or folder, if it is one.
+    fn path(&self) -> Option<&Path>;
 }
 
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -57,7 +85,7 @@ struct Place {
 }
 
 /// The manifests of a folder of results: that of this run, and those of other shards.
-pub(super) struct Manifest {
+pub(crate) struct Manifest {
     folder: PathBuf,
     /// That of this run is the first.
     paths: Vec<PathBuf>,
@@ -77,7 +105,7 @@ impl Manifest {
     ///
     /// # Errors
     /// Results of other settings; another run at work on the same ones; what the machine says.
-    pub(super) fn open(folder: &Path, shard: Option<Shard>, settings: &Value) -> Outcome<Self> {
+    pub(crate) fn open(folder: &Path, shard: Option<Shard>, settings: &Value) -> Outcome<Self> {
         let name = shard
             .map_or("manifest.jsonl".into(), |Shard { index, count }| format!("manifest.{index}-of-{count}.jsonl"));
         let path = folder.join(name);
@@ -106,30 +134,52 @@ impl Manifest {
         Ok(Manifest { folder: folder.into(), paths, own: Mutex::new(Own { file, end, lines }) })
     }
 
-    /// Whether an input needs no more work: it is the file that it was then, and its results are there.
-    pub(super) fn is_done(&self, input: &Input) -> Outcome<bool> {
+    /// Whether an input needs no more work: it is what it was then, and its results are there.
+    fn is_done(&self, input: &impl Named) -> Outcome<bool> {
         let Some(line) = self.line(&input.name())? else { return Ok(false) };
-        let are_there = || line.outputs.iter().all(|output| self.folder.join(output).is_file());
+        let are_there = || line.outputs.iter().all(|output| self.folder.join(output).exists());
         Ok(line.status == Status::Done && line.file == state(input) && are_there())
+    }
+
+    /// The inputs that are to be worked on. A note says how many are not.
+    ///
+    /// # Errors
+    /// What the machine says.
+    pub(crate) fn due<'a, T: Named>(&self, inputs: &'a [T]) -> Outcome<Vec<&'a T>> {
+        let mut due = Vec::new();
+        for input in inputs {
+            if !self.is_done(input)? {
+                due.push(input);
+            }
+        }
+        if due.len() < inputs.len() {
+            note(&format!("--resume: {} of {} inputs are done already", inputs.len() - due.len(), inputs.len()));
+        }
+        Ok(due)
+    }
+
+    /// Whether anything came of an input before, by whichever settings its file had.
+    pub(crate) fn knows(&self, input: &impl Named) -> bool {
+        self.own.lock().unwrap_or_else(PoisonError::into_inner).lines.contains_key(&input.name())
     }
 
     /// Notes what came of an input.
     ///
     /// # Errors
     /// What the machine says.
-    pub(super) fn add(&self, input: &Input, outcome: &Outcome<Done>) -> Outcome {
-        let outputs = |done: &Done| {
-            let below = done.written.iter().filter_map(|path| path.strip_prefix(&self.folder).ok());
+    pub(crate) fn add(&self, input: &impl Named, outcome: Result<&Entry<'_>, &Failure>) -> Outcome {
+        let outputs = |entry: &Entry<'_>| {
+            let below = entry.written.iter().filter_map(|path| path.strip_prefix(&self.folder).ok());
             below.map(Path::to_path_buf).collect()
         };
-        let (done, error) = (outcome.as_ref().ok(), outcome.as_ref().err().map(ToString::to_string));
+        let (done, error) = (outcome.ok(), outcome.err().map(ToString::to_string));
         let line = Line {
             input: input.name(),
             status: if done.is_some() { Status::Done } else { Status::Failed },
             file: state(input),
-            planes: done.map(|done| done.planes),
+            counts: done.map(|done| done.counts),
             outputs: done.map(outputs).unwrap_or_default(),
-            rows: done.map(|done| done.rows.clone()).unwrap_or_default(),
+            rows: done.map(|done| done.rows.to_string()).unwrap_or_default(),
             error,
         };
         let text = serde_json::to_string(&line).expect("text and numbers are always JSON") + "\n";
@@ -143,9 +193,9 @@ impl Manifest {
     }
 
     /// What an input adds to the table, and how many planes it has; none if it is not done.
-    pub(super) fn rows(&self, input: &Input) -> Outcome<Option<(String, usize)>> {
+    pub(crate) fn rows(&self, input: &impl Named) -> Outcome<Option<(String, usize)>> {
         let line = self.line(&input.name())?.filter(|line| line.status == Status::Done);
-        Ok(line.map(|line| (line.rows, line.planes.unwrap_or(0))))
+        Ok(line.map(|line| (line.rows, line.counts.map_or(0, |counts| counts.planes))))
     }
 
     fn line(&self, input: &str) -> Outcome<Option<Line>> {
@@ -211,10 +261,25 @@ fn no_manifest(path: &Path, why: &str) -> Failure {
     Failure::request(format!("{}: not a manifest ({why}); move it away, or use another --out-dir", path.display()))
 }
 
-/// Bytes and last change of an input's file.
-fn state(input: &Input) -> Option<(u64, u64)> {
-    let Input::File { path, .. } = input else { return None };
-    let about = fs::metadata(path).ok()?;
-    let changed = about.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
-    Some((about.len(), changed.as_nanos() as u64))
+/// Bytes and last change of an input's file, or of all files of its folder.
+fn state(input: &impl Named) -> Option<(u64, u64)> {
+    let path = input.path()?;
+    let (mut bytes, mut newest) = (0, 0);
+    let mut due = vec![path.to_path_buf()];
+    while let Some(path) = due.pop() {
+        let about = fs::metadata(&path).ok()?;
+        if about.is_dir() {
+            for entry in fs::read_dir(&path).ok()?.flatten() {
+                // Folders behind links may lead back.
+                if !entry.path().is_dir() || entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+                    due.push(entry.path());
+                }
+            }
+        } else {
+            let changed = about.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
+            bytes += about.len();
+            newest = newest.max(changed.as_nanos() as u64);
+        }
+    }
+    Some((bytes, newest))
 }
