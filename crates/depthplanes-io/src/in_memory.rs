@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use depthplanes::{AnyView, Sensor, ValueKind};
+use depthplanes::{AnyView, Sensor, ValueKind, with_view};
 
 use crate::choice::{IN_MEMORY, rests_on_values};
 use crate::encoding;
@@ -85,9 +85,23 @@ impl Settled {
 /// What is settled of the maps of one camera, by their size and type.
 #[derive(Clone, Debug, Default)]
 pub struct SettledMaps {
-    /// The last one first: what is settled, if anything is.
-    kinds: Vec<(Kind, Option<Arc<Settled>>)>,
+    /// The last one first.
+    kinds: Vec<Known>,
 }
+
+/// What is known of the maps of one size and type.
+#[derive(Clone, Debug)]
+struct Known {
+    kind: Kind,
+    /// What is settled, if anything is.
+    settled: Option<Arc<Settled>>,
+    /// Whether one of them showed enough for a look at what the numbers mean.
+    was_seen: bool,
+}
+
+/// A map of which fewer than one pixel in so many was measured shows nothing of what its numbers mean: cameras often begin with
+/// blank frames. Maps of laser scanners that are sparse have one in thirty.
+const BLANK: usize = 100;
 
 /// Most sizes and types of a camera's maps that are remembered: a camera has few.
 const MOST_KINDS: usize = 8;
@@ -108,21 +122,30 @@ impl Kind {
 }
 
 impl SettledMaps {
-    /// What is settled of maps of that size and type; `None` of the first, and if each of them is read anew.
+    /// What is settled of maps of that size and type; `None` until one of them was measured, and if each of them is read anew.
     pub fn of(&self, map: &AnyView<'_>) -> Option<Arc<Settled>> {
-        self.kinds.iter().find(|(known, _)| *known == Kind::of(map))?.1.clone()
+        self.kinds.iter().find(|known| known.kind == Kind::of(map))?.settled.clone()
     }
 
     /// Remembers what is settled of a frame that [`frame_of_samples`] made with these options, and of maps like `map`, its samples
-    /// where they lie; `None` if they do not lie as those of a map. Whether it is the first of its size and type.
+    /// where they lie; `None` if they do not lie as those of a map. Whether a person should know what there is to say of it: it is
+    /// the first of its size and type, or the first of them of which anything was measured.
     pub fn add(&mut self, frame: &Frame, map: Option<&AnyView<'_>>, options: &ReadOptions) -> bool {
         let kind = map.map_or(Kind(frame.width, frame.height, 0), Kind::of);
-        let is_first = !self.kinds.iter().any(|(known, _)| *known == kind);
-        if is_first {
-            self.kinds.truncate(MOST_KINDS - 1);
-            self.kinds.insert(0, (kind, map.and_then(|_| Settled::of(frame, options)).map(Arc::new)));
+        let at = self.kinds.iter().position(|known| known.kind == kind);
+        if at.is_some_and(|at| self.kinds[at].was_seen) {
+            return false;
         }
-        is_first
+        let was_seen = frame
+            .view()
+            .is_ok_and(|view| with_view!(view, view => view.valid_pixels()) * BLANK >= frame.width * frame.height);
+        let settled = map.filter(|_| was_seen).and_then(|_| Settled::of(frame, options)).map(Arc::new);
+        if let Some(at) = at {
+            self.kinds.remove(at);
+        }
+        self.kinds.truncate(MOST_KINDS - 1);
+        self.kinds.insert(0, Known { kind, settled, was_seen });
+        at.is_none() || was_seen
     }
 }
 
@@ -168,6 +191,22 @@ mod tests {
         assert!(maps.of(&view).is_some() && !maps.add(&frame, Some(&view), &options));
         assert!(maps.of(&lower).is_none());
         assert!(maps.add(&frame, None, &options) && !maps.add(&frame, None, &options));
+    }
+
+    #[test]
+    fn nothing_is_settled_by_blank_maps() {
+        let options = ReadOptions::default();
+        let mut maps = SettledMaps::default();
+        let mut add = |values: &[u16]| {
+            let frame = frame_of_samples(&bytes(values), "uint16", (64, 48), &options).unwrap();
+            let view: AnyView<'_> = DepthView::new(values, 64, 48).unwrap().into();
+            (maps.add(&frame, Some(&view), &options), maps.of(&view).is_some())
+        };
+        let blank = vec![0; 64 * 48];
+        let mut specks = blank.clone();
+        specks[..30].fill(1234);
+        let told = [&blank, &blank, &specks, &wall(2000, 0), &blank].map(|values| add(values));
+        assert_eq!(told, [(true, false), (false, false), (false, false), (true, true), (false, true)]);
     }
 
     #[test]

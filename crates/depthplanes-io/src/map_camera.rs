@@ -8,7 +8,7 @@ use crate::camera_file::CameraFile;
 use crate::encoding::Stereo;
 use crate::error::{Error, Result};
 use crate::presets::SensorPreset;
-use crate::resized::{OF_CROP, Size, flag, of_other_shape, scaled, turned, whole_picture};
+use crate::resized::{OF_CROP, OF_OTHER_CROP, Size, flag, of_other_shape, scaled, turned, whole_picture};
 
 /// Furthest that a principal point lies from the middle without a note, as a share of the side: our choice. It is 0.11 in
 /// Middlebury's rigs.
@@ -179,8 +179,8 @@ fn no_choice(file: &CameraFile, (w, h): Size) -> Error {
     Error::parameter("camera", format_args!("for other sizes than {w} x {h}"), accepted)
 }
 
-/// Notes on a camera that is unlikely for a map; `is_size_stated` if a size was stated, so that the picture may well be a
-/// part of a larger one.
+/// Notes on a camera that is unlikely for a map; `is_size_stated` if a size was stated, so that the principal point of a part of
+/// a picture may lie outside of it.
 fn checked(camera: &Intrinsics, map: Size, is_size_stated: bool, lens: Option<&Distortion>) -> Result<Vec<String>> {
     refuse_other_orders(camera, map)?;
     if !is_size_stated {
@@ -189,7 +189,7 @@ fn checked(camera: &Intrinsics, map: Size, is_size_stated: bool, lens: Option<&D
     let is_wide = lens.is_some_and(|lens| lens.model() == DistortionModel::KannalaBrandt);
     let notes = [
         mirrored(camera),
-        middle_elsewhere(camera, map, is_size_stated),
+        middle_elsewhere(camera, map),
         odd_pixels(camera, map),
         odd_field(camera, map).filter(|_| !is_wide),
     ];
@@ -253,7 +253,7 @@ fn refuse_outside(camera: &Intrinsics, map: Size) -> Result<()> {
             ),
             None => format!(
                 "a principal point within the map, which has {w} x {h} pixels; --camera-size WxH if the camera is for another \
-                 size, --camera-size {w}x{h} if the map is a part of a larger picture"
+                 size; {OF_CROP}, and state --camera-size {w}x{h} if the principal point is then still outside"
             ),
         },
     };
@@ -261,7 +261,7 @@ fn refuse_outside(camera: &Intrinsics, map: Size) -> Result<()> {
 }
 
 /// A principal point that is the middle of another picture, or far from that of the map.
-fn middle_elsewhere(camera: &Intrinsics, map: Size, is_size_stated: bool) -> Option<String> {
+fn middle_elsewhere(camera: &Intrinsics, map: Size) -> Option<String> {
     let (Intrinsics { cx, cy, .. }, (w, h)) = (*camera, map);
     let has = format!("and the map has {w} x {h}");
     if w != h && is_middle_of([cx, cy], (h, w)) {
@@ -270,14 +270,14 @@ fn middle_elsewhere(camera: &Intrinsics, map: Size, is_size_stated: bool) -> Opt
              turned by 90 degrees?"
         ));
     }
-    if let Some(((width, height), scaled)) = whole_picture(camera, map).filter(|_| !is_size_stated) {
+    if let Some(((width, height), scaled)) = whole_picture(camera, map) {
         return Some(format!(
             "the principal point {cx},{cy} is the middle of {width} x {height} pixels, {has}: if the picture was resized, give \
              --camera-size {width}x{height} or {}; {OF_CROP}",
             flag(&scaled)
         ));
     }
-    let is_known = |size: &Size| !is_size_stated && !is_middle_of([cx, cy], map) && is_middle_of([cx, cy], *size);
+    let is_known = |size: &Size| !is_middle_of([cx, cy], map) && is_middle_of([cx, cy], *size);
     if let Some((width, height)) = COMMON.into_iter().find(is_known) {
         return Some(format!(
             "the principal point {cx},{cy} is the middle of {width} x {height} pixels, {has}: {}",
@@ -286,8 +286,8 @@ fn middle_elsewhere(camera: &Intrinsics, map: Size, is_size_stated: bool) -> Opt
     }
     (!is_near_middle([cx, cy], map)).then(|| {
         format!(
-            "the principal point {cx},{cy} lies far from the middle of {w} x {h} pixels: right if the map is a part of a larger \
-             picture, else check --intrinsics, --camera and --camera-size"
+            "the principal point {cx},{cy} lies far from the middle of {w} x {h} pixels: check --intrinsics, --camera and \
+             --camera-size; {OF_OTHER_CROP}"
         )
     })
 }

@@ -24,6 +24,10 @@ pub(crate) fn scaled(camera: &Intrinsics, from: Size, to: Size) -> Option<Intrin
 /// What to do about the camera of a picture that the map is a crop of.
 pub(crate) const OF_CROP: &str = "if the map is a crop of that picture, subtract the crop's left column from cx and its top row from cy in --intrinsics";
 
+/// What is right of a crop whose picture is not known.
+pub(crate) const OF_OTHER_CROP: &str =
+    "it is right for a crop if the crop's left column was subtracted from the picture's cx, and its top row from cy";
+
 /// The camera for maps of which every n-th row or column was kept; none if the sides are no such shares.
 fn thinned(camera: &Intrinsics, from: Size, map: Size) -> Option<Intrinsics> {
     let every = |from: usize, to: usize| (1..=8).find(|n| to > 0 && from / n == to);

@@ -490,7 +490,7 @@ fn cameras_that_cannot_be_the_maps_are_refused_and_unlikely_ones_noted() {
     let error = plain("319.5,239.5,525,525", (320, 240)).unwrap_err().to_string();
     assert!(error.contains("--intrinsics=262.5,262.5,159.5,119.5"), "{error}");
     let error = plain("525,525,700,239.5", (640, 480)).unwrap_err().to_string();
-    assert!(error.contains("principal point") && error.contains("--camera-size"), "{error}");
+    assert!(error.contains("--camera-size") && error.contains("subtract the crop's left column from cx"), "{error}");
     let noted = |numbers: &str, size| plain(numbers, size).unwrap().warnings.join("; ");
     assert!(noted("525,525,159.5,119.5", (640, 480)).contains("--camera-size 320x240"));
     assert!(noted("525,525,80,239.5", (640, 480)).contains("far from the middle"));
@@ -499,9 +499,15 @@ fn cameras_that_cannot_be_the_maps_are_refused_and_unlikely_ones_noted() {
     for good in ["525,525,319.5,239.5", "481.2,-480,319.5,239.5", "594.21,591.04,339.31,242.74", "380,380,330,200"] {
         assert_eq!(noted(good, (640, 480)), "", "{good}");
     }
-    // A size that is stated says that the map is a part of a larger picture.
-    let cropped = framed("525,525,700,239.5", (640, 480), |options| options.camera_size = Some((640, 480))).unwrap();
-    assert!(cropped.warnings[0].contains("far from the middle"), "{:?}", cropped.warnings);
+    // A size that is stated says that the map is a part of a larger picture, whose principal point may lie outside. That of the
+    // picture itself is noted for a crop of any size.
+    let cropped = |numbers: &str, size| {
+        framed(numbers, size, |options| options.camera_size = Some(size)).unwrap().warnings.join("; ")
+    };
+    let own = cropped("525,525,700,239.5", (640, 480));
+    assert!(own.contains("right for a crop if the crop's left column was subtracted"), "{own}");
+    let of_picture = cropped("525,525,319.5,239.5", (260, 260));
+    assert!(of_picture.contains("the middle of 640 x 480") && of_picture.contains("subtract"), "{of_picture}");
 }
 
 #[test]
