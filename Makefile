@@ -56,6 +56,7 @@ try-deb: ## Install the package that `make dist` made in a new Debian and run it
 	@scripts/try-deb dist/depthplanes_*_amd64.deb
 
 deny: ## Check licences, sources and advisories of all dependencies
+	$(call say,dependencies)
 	@scripts/deny '$(PYTHON)'
 
 # Two at a time, which does not show the figures that `make oracles` prints.
@@ -63,7 +64,7 @@ test: ORACLE_FLAGS = --numprocesses 2
 test: lint rust-tests rustdoc packages targets browser oracles python c ## Run every check: formatting, lints, all tests, documentation, packages, other targets, the pages in a browser, Python oracles, the Python package, the C library
 	$(call say,all checks passed)
 
-lint: format clippy ## Check formatting and lints, change nothing
+lint: format clippy deny ## Check formatting, lints and dependencies, change nothing
 
 format:
 	$(call say,formatting)
