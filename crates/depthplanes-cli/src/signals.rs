@@ -1,6 +1,8 @@
 //! Signals that would end the program without a word become errors with an exit code of the machine's, and those that
 //! interrupt it leave no file that is not finished.
 
+#[cfg(unix)]
+use crate::failure::say;
 use std::sync::atomic::{AtomicI32, Ordering};
 
 /// What to do about signals. Where it cannot be set the system's own way stays.
@@ -21,9 +23,9 @@ pub(crate) fn prepare() {
 pub(crate) fn prepare() {}
 
 /// Before files are written: waits, in a thread of its own, for a signal that interrupts the program. The files that are
-/// not finished are removed then, and the exit code is that of shells, 128 and the signal's number.
+/// not finished are removed then, and the exit code is that of shells, 128 and the signal's number. `next` says what to do.
 #[cfg(unix)]
-pub(crate) fn tidy_up_if_interrupted() {
+pub(crate) fn tidy_up_if_interrupted(next: &'static str) {
     use depthplanes_io::outputs::remove_unfinished;
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     use signal_hook::iterator::Signals;
@@ -32,6 +34,7 @@ pub(crate) fn tidy_up_if_interrupted() {
         let Ok(mut signals) = Signals::new(heard) else { return };
         if let Some(signal) = signals.forever().next() {
             remove_unfinished();
+            say(&format!("interrupted: files that were finished are kept; {next}"));
             std::process::exit(128 + signal);
         }
     };
@@ -40,7 +43,7 @@ pub(crate) fn tidy_up_if_interrupted() {
 }
 
 #[cfg(not(unix))]
-pub(crate) fn tidy_up_if_interrupted() {}
+pub(crate) fn tidy_up_if_interrupted(_next: &'static str) {}
 
 /// For a command that finishes what it writes when it is interrupted: from now on the signal's number, 0 before. A second
 /// signal ends the program as the first one ends others.

@@ -171,14 +171,20 @@ fn a_run_that_is_interrupted_leaves_nothing_half_written() {
         // The table is open while the second input, a pipe, is waited for.
         bench.shell("rm -f pipe; mkfifo pipe").ok();
         let words = ["detect", "map.pgm", "pipe", "--table", "t.csv", "--out-dir", "o", "--only", "labels"];
-        let mut child = bench.command().args(words).stdout(std::process::Stdio::null()).spawn().unwrap();
+        let mut command = bench.command();
+        command.args(words).stdout(std::process::Stdio::null()).stderr(std::process::Stdio::piped());
+        let child = command.spawn().unwrap();
         let start = std::time::Instant::now();
         while !bench.folder.join("o/map.labels.png").exists() && start.elapsed().as_secs() < 20 {
             std::thread::sleep(std::time::Duration::from_millis(20));
         }
         assert!(bench.names().iter().any(|name| name.ends_with(".part")), "{signal}");
         bench.shell(&format!("kill -{signal} {}", child.id())).ok();
-        assert_eq!(child.wait().unwrap().code(), Some(code), "{signal}");
+        let ran = support::Ran::from(child.wait_with_output().unwrap());
+        assert!(
+            ran.code == Some(code) && ran.err.contains("interrupted: files that were finished are kept"),
+            "{ran:?}"
+        );
         assert_eq!(bench.names(), ["map.pgm", "o", "pipe", "t.csv"], "{signal}");
         assert_eq!(bench.read("t.csv"), b"old");
         assert_eq!(support::names_in(&bench.folder.join("o")), ["map.labels.png"]);

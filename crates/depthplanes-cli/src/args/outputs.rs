@@ -4,7 +4,7 @@ use super::flags;
 use clap::{Arg, ArgMatches, builder::PossibleValuesParser};
 use depthplanes::Coplanar;
 use depthplanes::outline::DEFAULT_TOLERANCE_PX;
-use depthplanes_io::outputs::{OUTPUTS, Output};
+use depthplanes_io::outputs::{OUTPUTS, Output, TableForm};
 use depthplanes_video::StatedUp;
 
 pub(super) fn output_flags() -> Vec<Arg> {
@@ -24,10 +24,13 @@ pub(super) fn output_flags() -> Vec<Arg> {
         only.hide_possible_values(true).help("With --out-dir: write only these, such as `overlay,planes`").long_help(
             format!("With --out-dir: write only these; names are {}", output_names()),
         ),
-        flags::path("table", "FILE").help("Write the planes of all inputs into one file (.csv, .jsonl or .parquet)").long_help(
-            "Write the planes of all inputs into one file: .csv and .parquet have a row for each plane, .jsonl a line for each \
-             input. Inputs that fail are left out and named",
-        ),
+        flags::path("table", "FILE")
+            .help(format!("Write the planes of all inputs into one file ({})", TableForm::extensions()))
+            .long_help(format!(
+                "Write the planes of all inputs into one file ({}): a row for each plane, in .jsonl a line for each input. Inputs \
+                 that fail are left out and named",
+                TableForm::extensions()
+            )),
         flags::switch("legend", "Put a legend beside the overlay and numbers on its planes"),
         flags::switch(
             "curved",

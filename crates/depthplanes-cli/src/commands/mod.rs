@@ -20,15 +20,24 @@ use crate::failure::Outcome;
 use crate::signals;
 use std::io::Write;
 
+/// What to do after a command that writes files was interrupted; `None` for other commands, and `track`, which sees to it itself.
+fn after_interruption(command: &Command) -> Option<&'static str> {
+    match command {
+        Command::Eval(_) | Command::Paper(_) => Some("the same words go on"),
+        Command::Detect(wanted) if wanted.resume => Some("the same words go on"),
+        Command::Detect(wanted) if wanted.out_dir.is_some() => {
+            Some("the same words begin again; with --resume, from the first run on, they go on")
+        }
+        Command::Detect(wanted) if wanted.writes_files() => Some("the same words begin again"),
+        Command::Demo { .. } | Command::Compare(_) | Command::Man { .. } => Some("the same words begin again"),
+        _ => None,
+    }
+}
+
 /// Runs a command; `out` is standard output.
 pub(crate) fn run(command: &Command, out: &mut dyn Write) -> Outcome {
-    let is_writing = match command {
-        Command::Detect(wanted) => wanted.writes_files(),
-        Command::Demo { .. } | Command::Compare(_) | Command::Eval(_) | Command::Paper(_) | Command::Man { .. } => true,
-        _ => false,
-    };
-    if is_writing {
-        signals::tidy_up_if_interrupted();
+    if let Some(next) = after_interruption(command) {
+        signals::tidy_up_if_interrupted(next);
     }
     match command {
         Command::Detect(wanted) => detect::run(wanted, out),

@@ -59,11 +59,15 @@ impl TableForm {
         })
     }
 
-    /// `.csv`, `.jsonl` or `.parquet`; a build without Parquet says so.
+    /// The extensions that there are: `.csv or .jsonl`, with the feature `parquet` that of Parquet as well.
+    pub fn extensions() -> String {
+        FORMS.iter().map(|form| format!(".{}", form.extension)).collect::<Vec<_>>().join(" or ")
+    }
+
+    /// The extensions; a build without Parquet says so.
     fn accepted() -> String {
-        let dotted: Vec<String> = FORMS.iter().map(|form| format!(".{}", form.extension)).collect();
         let without = " (this build has no Parquet; the packages have it, and builds with `--features parquet`)";
-        dotted.join(" or ") + if cfg!(feature = "parquet") { "" } else { without }
+        Self::extensions() + if cfg!(feature = "parquet") { "" } else { without }
     }
 
     /// The form's name: its extension.
