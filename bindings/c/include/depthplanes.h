@@ -58,6 +58,62 @@ typedef enum dp_status {
 } dp_status;
 
 /**
+ * What a plane is to somebody who stands on the floor.
+ */
+typedef enum dp_plane_class {
+    /**
+     * None of the others.
+     */
+    DP_OTHER = 0,
+    /**
+     * The floor, or a piece of it.
+     */
+    DP_FLOOR = 1,
+    /**
+     * Level, faces down, at 1.8 m or higher.
+     */
+    DP_CEILING = 2,
+    /**
+     * Upright and at least a quarter of a square metre.
+     */
+    DP_WALL = 3,
+    /**
+     * Level, faces up, too high for a step: the top of a table, a seat, a shelf.
+     */
+    DP_TABLE = 4,
+    /**
+     * Faces up and slopes by at most 30 degrees.
+     */
+    DP_RAMP = 5,
+    /**
+     * Level, faces up, and no more than 25 cm above or below the floor or another step.
+     */
+    DP_STEP = 6,
+} dp_plane_class;
+
+/**
+ * How a tracked plane stands in the newest frame.
+ */
+typedef enum dp_track_state {
+    /**
+     * Seen for the first time.
+     */
+    DP_NEW = 0,
+    /**
+     * Seen again.
+     */
+    DP_TRACKED = 1,
+    /**
+     * Not seen: hidden, out of the picture, or missed.
+     */
+    DP_LOST = 2,
+    /**
+     * Now part of another plane (`subsumed_by`); if they part again it gets its id back.
+     */
+    DP_SUBSUMED = 3,
+} dp_track_state;
+
+/**
  * The type of a map's pixels.
  */
 typedef enum dp_pixel_type {
@@ -90,6 +146,18 @@ typedef struct dp_detection dp_detection;
  * detector; different detectors may be used at the same time.
  */
 typedef struct dp_detector dp_detector;
+
+/**
+ * The ground of a map, and the memory that frames share. What its functions return belongs to it, and is valid until
+ * `dp_detector_ground` writes to it again or it is freed. Threads may read one at the same time.
+ */
+typedef struct dp_ground dp_ground;
+
+/**
+ * Follows planes from frame to frame. What its functions return belongs to it, and is valid until the next frame or until it is
+ * freed. Threads may read one at the same time.
+ */
+typedef struct dp_tracker dp_tracker;
 
 /**
  * A closed ring of an outline; its last point is joined to the first.
@@ -231,6 +299,177 @@ typedef struct dp_map {
 } dp_map;
 
 /**
+ * The floor, and how the camera stands above it. Standard deviations follow from the noise of the sensor.
+ */
+typedef struct dp_floor {
+    /**
+     * Label of its largest piece, whose plane it is.
+     */
+    uint16_t label;
+    /**
+     * Pixels of all pieces.
+     */
+    size_t pixel_count;
+    /**
+     * Its unit normal, up, camera coordinates.
+     */
+    double normal[3];
+    /**
+     * Direction of view along the floor, of length 1, camera coordinates.
+     */
+    double ahead[3];
+    /**
+     * To the right of `ahead` along the floor, of length 1.
+     */
+    double right[3];
+    /**
+     * Height of the camera above it, metres.
+     */
+    double height_m;
+    /**
+     * Standard deviation of `height_m`.
+     */
+    double height_sd_m;
+    /**
+     * How far the camera looks down, degrees: 0 along the floor, 90 straight down, below 0 upwards.
+     */
+    double tilt_deg;
+    /**
+     * Standard deviation of `tilt_deg`.
+     */
+    double tilt_sd_deg;
+    /**
+     * Turn about the optical axis, degrees; above 0 where the camera's right side is lower.
+     */
+    double roll_deg;
+    /**
+     * Standard deviation of `roll_deg`.
+     */
+    double roll_sd_deg;
+    /**
+     * How sure it is that this is the floor, 0 to 1; below 0.5 look at the picture.
+     */
+    double confidence;
+} dp_floor;
+
+/**
+ * A plane, by where it is above the floor.
+ */
+typedef struct dp_classified_plane {
+    /**
+     * Its label.
+     */
+    uint16_t label;
+    /**
+     * What it is.
+     */
+    enum dp_plane_class plane_class;
+    /**
+     * Height of its middle above the floor, metres; NaN if its place is not known.
+     */
+    double height_m;
+    /**
+     * Angle between its normal and the floor's, degrees: 0 of level planes that face up, 90 of upright ones, 180 of ceilings.
+     */
+    double slope_deg;
+} dp_classified_plane;
+
+/**
+ * Something that a wheel does not pass: a thing on the floor, or a hole in it.
+ */
+typedef struct dp_obstacle {
+    /**
+     * Whether the floor falls here instead of something standing on it.
+     */
+    bool is_drop;
+    /**
+     * Distance of its nearest point along the floor, from the point below the camera, metres. Of a drop: to its near edge.
+     */
+    double distance_m;
+    /**
+     * Degrees to the right of the direction of view, of that point.
+     */
+    double bearing_deg;
+    /**
+     * Extent across the direction of view, metres.
+     */
+    double width_m;
+    /**
+     * Height of its highest point above the floor, metres; of a drop that of its lowest, below 0.
+     */
+    double height_m;
+    /**
+     * Leftmost column of its pixels.
+     */
+    uint32_t u_min;
+    /**
+     * Topmost row.
+     */
+    uint32_t v_min;
+    /**
+     * Rightmost column, inclusive.
+     */
+    uint32_t u_max;
+    /**
+     * Bottom row, inclusive.
+     */
+    uint32_t v_max;
+} dp_obstacle;
+
+/**
+ * A range of bearings, and how far the floor is free in it.
+ */
+typedef struct dp_sector {
+    /**
+     * Its left end, degrees to the right of the direction of view.
+     */
+    double from_deg;
+    /**
+     * Its right end.
+     */
+    double to_deg;
+    /**
+     * Metres along the floor from the point below the camera to the nearest obstacle or drop, or to the farthest floor that is
+     * seen; 0 where no floor is.
+     */
+    double free_m;
+    /**
+     * Whether an obstacle or a drop ends it. Otherwise nothing is known of what comes after `free_m`.
+     */
+    bool is_blocked;
+} dp_sector;
+
+/**
+ * A step up from the floor, or down from it.
+ */
+typedef struct dp_step {
+    /**
+     * Label of its tread.
+     */
+    uint16_t label;
+    /**
+     * 1 for the first step up from the floor, then 2, ...; -1 for the first one down.
+     */
+    int32_t order;
+    /**
+     * Height of the tread above the floor, metres; below 0 of steps down.
+     */
+    double height_m;
+    /**
+     * Height from the level before, metres; below 0 of steps down.
+     */
+    double rise_m;
+    /**
+     * Distance from the near edge of the step before to its own, metres; NaN of the first.
+     */
+    double run_m;
+    /**
+     * Distance of the near edge from the point below the camera, metres, along the direction of the stair.
+     */
+    double distance_m;
+} dp_step;
+
+/**
  * A parameter of a method.
  */
 typedef struct dp_parameter {
@@ -291,6 +530,56 @@ typedef struct dp_name {
      */
     const char *about;
 } dp_name;
+
+/**
+ * A plane over frames.
+ */
+typedef struct dp_track {
+    /**
+     * Its lasting number, from 1; never given twice.
+     */
+    uint32_t id;
+    /**
+     * How it stands in this frame.
+     */
+    enum dp_track_state state;
+    /**
+     * Its label in this frame's detection; 0 if it is lost or subsumed.
+     */
+    uint16_t label;
+    /**
+     * Frames since it was first seen, this one included.
+     */
+    uint32_t age;
+    /**
+     * Frames in which it was seen.
+     */
+    uint32_t seen;
+    /**
+     * Frames since it was last seen; 0 while it is.
+     */
+    uint32_t unseen;
+    /**
+     * Id of the plane that it is part of now; 0 if of none.
+     */
+    uint32_t subsumed_by;
+    /**
+     * Id of the plane that it was part of before; 0 if of none.
+     */
+    uint32_t split_from;
+    /**
+     * Unit normal, this frame's camera coordinates, filtered over the frames; NaN where metres are not known.
+     */
+    double normal[3];
+    /**
+     * Distance of the camera from the plane, perpendicular, metres; NaN where metres are not known.
+     */
+    double distance_m;
+    /**
+     * Covariance of (nx, ny, nz, distance), row by row.
+     */
+    double covariance[4][4];
+} dp_track;
 
 #ifdef __cplusplus
 extern "C" {
@@ -447,6 +736,29 @@ enum dp_status dp_detector_points(struct dp_detector *detector,
                                   size_t capacity);
 
 /**
+ * Finds the floor of a map by what was found in it, what stands on it, and what each plane is, and writes it to a ground,
+ * whatever it held before. If that fails, it holds nothing. The map is read again; it has to be the one that the detection is of.
+ * Needs unit and camera.
+ */
+enum dp_status dp_detector_ground(struct dp_detector *detector,
+                                  const struct dp_map *map,
+                                  const struct dp_detection *detection,
+                                  struct dp_ground *ground);
+
+/**
+ * Gives what was found in the next frame of a camera to a tracker, by which planes keep their ids. `pose` is null, or the camera's
+ * pose if it is known: 12 numbers, row by row the first three rows of the matrix that takes camera coordinates to those of a
+ * world that stays the same, metres; of a matrix of 4 x 4 in row-major order they are the first 12. Without it the motion is
+ * estimated from the planes. The map is read again; it has to be the one that the
+ * detection is of. If it fails, the tracker stays as it was.
+ */
+enum dp_status dp_detector_track(struct dp_detector *detector,
+                                 const struct dp_map *map,
+                                 const struct dp_detection *detection,
+                                 const double *pose,
+                                 struct dp_tracker *tracker);
+
+/**
  * Says why the pixel in column u, row v of a map has a plane or none: a sentence, and a line for each parameter that helps, with
  * its value. Runs the method several times. What `text` is set to is valid until the next call of it with this detector.
  */
@@ -455,6 +767,70 @@ enum dp_status dp_detector_explain(struct dp_detector *detector,
                                    size_t u,
                                    size_t v,
                                    const char **text);
+
+/**
+ * A ground of no map, to be written to by `dp_detector_ground`. Keep it for all frames of a camera: its memory is used again.
+ */
+struct dp_ground *dp_ground_new(void);
+
+/**
+ * Frees a ground; null is none.
+ */
+void dp_ground_free(struct dp_ground *ground);
+
+/**
+ * States the direction that is up, in camera coordinates (x right, y down, z forward), of any length: what an accelerometer at
+ * rest measures, turned into the camera's axes. It may change from frame to frame. Without it up is estimated from the planes, for
+ * a camera that is upright to within 60 degrees. The text of an error is that of `dp_error(NULL)`.
+ */
+enum dp_status dp_ground_set_up(struct dp_ground *ground,
+                                double x,
+                                double y,
+                                double z);
+
+/**
+ * States the camera's height above the floor that it stands on, metres: of several levels the one nearest to it is the floor.
+ * Without it the lowest is. The text of an error is that of `dp_error(NULL)`.
+ */
+enum dp_status dp_ground_set_camera_height(struct dp_ground *ground,
+                                           double height_m);
+
+/**
+ * The floor; null if there is none in view, none that can be told from a wall, or nothing was looked for.
+ */
+const struct dp_floor *dp_ground_floor(const struct dp_ground *ground);
+
+/**
+ * What each pixel is, row by row without gaps: 0 not known, 1 floor, 2 obstacle, 4 drop, 8 overhead (above 2 m). Null without
+ * a floor.
+ */
+const uint8_t *dp_ground_marks(const struct dp_ground *ground);
+
+/**
+ * What each plane of the detection is, in its order. Their number is written to `count`, unless that is null. Null without a floor.
+ */
+const struct dp_classified_plane *dp_ground_planes(const struct dp_ground *ground,
+                                                   size_t *count);
+
+/**
+ * What stands on the floor and where it falls, the nearest first. Their number is written to `count`, unless that is null. Null if
+ * there is nothing.
+ */
+const struct dp_obstacle *dp_ground_obstacles(const struct dp_ground *ground,
+                                              size_t *count);
+
+/**
+ * How far the floor is free, from left to right across the picture. Their number is written to `count`, unless that is null.
+ * Null without a floor.
+ */
+const struct dp_sector *dp_ground_sectors(const struct dp_ground *ground,
+                                          size_t *count);
+
+/**
+ * Steps up from the floor, then steps down. Their number is written to `count`, unless that is null. Null if there are none.
+ */
+const struct dp_step *dp_ground_steps(const struct dp_ground *ground,
+                                      size_t *count);
 
 /**
  * All methods, the usual one first. Their number is written to `count`, unless that is null.
@@ -475,6 +851,34 @@ const struct dp_name *dp_units(size_t *count);
  * The version of the library.
  */
 const char *dp_version(void);
+
+/**
+ * A tracker that keeps the id of a plane that is not seen for `kept_frames` frames; 0 for the usual number, 30.
+ */
+struct dp_tracker *dp_tracker_new(uint32_t kept_frames);
+
+/**
+ * Frees a tracker; null is none.
+ */
+void dp_tracker_free(struct dp_tracker *tracker);
+
+/**
+ * The planes that are followed, by id: those of this frame, and those that are lost or subsumed. Their number is written to
+ * `count`, unless that is null. Null if there are none.
+ */
+const struct dp_track *dp_tracker_tracks(const struct dp_tracker *tracker,
+                                         size_t *count);
+
+/**
+ * The id of a label of this frame; 0 if there is no such label.
+ */
+uint32_t dp_tracker_id(const struct dp_tracker *tracker, uint16_t label);
+
+/**
+ * This frame's label image with borders that do not flicker, row by row without gaps: where planes meet, pixels that lie on both
+ * are of the one that they were of before. Labels are those of the detection. Null before the first frame.
+ */
+const uint16_t *dp_tracker_labels(const struct dp_tracker *tracker);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -136,6 +136,87 @@ private:
 /// The rings of a plane's outline, each outer ring followed by its holes.
 inline Span<const dp_ring> rings(const dp_plane &plane) noexcept { return {plane.rings, plane.ring_count}; }
 
+/// Values that the library lends, with their number.
+template <class Row, class Of> Span<const Row> lent(const Row *(*rows)(const Of *, std::size_t *), const Of *of) noexcept {
+    std::size_t count = 0;
+    const Row *first = rows(of, &count);
+    return {first, count};
+}
+
+/// The floor of a map, and what stands on it. What it lends is valid until it is written to again, and as long as it lives.
+class Ground {
+public:
+    Ground() : ground_(dp_ground_new()) {}
+
+    /// The direction that is up, camera coordinates, of any length: what an accelerometer at rest measures.
+    Ground &up(double x, double y, double z) { return done(dp_ground_set_up(get(), x, y, z)); }
+
+    /// Height of the camera above the floor that it stands on, metres: of several levels the one nearest to it is the floor.
+    Ground &camera_height(double height_m) { return done(dp_ground_set_camera_height(get(), height_m)); }
+
+    /// The floor; null if there is none.
+    const dp_floor *floor() const noexcept { return dp_ground_floor(get()); }
+
+    /// What each pixel is, width x height of the detection: 0 not known, 1 floor, 2 obstacle, 4 drop, 8 overhead. Null without a floor.
+    const std::uint8_t *marks() const noexcept { return dp_ground_marks(get()); }
+
+    /// What each plane of the detection is; empty without a floor.
+    Span<const dp_classified_plane> planes() const noexcept { return lent(dp_ground_planes, get()); }
+
+    /// What stands on the floor and where it falls, the nearest first.
+    Span<const dp_obstacle> obstacles() const noexcept { return lent(dp_ground_obstacles, get()); }
+
+    /// How far the floor is free, from left to right.
+    Span<const dp_sector> sectors() const noexcept { return lent(dp_ground_sectors, get()); }
+
+    /// Steps up from the floor, then steps down.
+    Span<const dp_step> steps() const noexcept { return lent(dp_ground_steps, get()); }
+
+    const dp_ground *get() const noexcept { return ground_.get(); }
+    dp_ground *get() noexcept { return ground_.get(); }
+
+private:
+    struct Free {
+        void operator()(dp_ground *ground) const noexcept { dp_ground_free(ground); }
+    };
+
+    Ground &done(dp_status status) {
+        if (status != DP_OK)
+            throw Error(status, dp_error(nullptr));
+        return *this;
+    }
+
+    std::unique_ptr<dp_ground, Free> ground_;
+};
+
+/// Where a camera is: the first three rows of the matrix that takes camera coordinates to those of the world, metres.
+using Pose = std::array<std::array<double, 4>, 3>;
+
+/// Planes that keep their ids from frame to frame. What it lends is valid until the next frame, and as long as it lives.
+class Tracker {
+public:
+    /// The id of a plane that is not seen is kept for so many frames.
+    explicit Tracker(std::uint32_t kept_frames = 30) : tracker_(dp_tracker_new(kept_frames)) {}
+
+    /// The planes that are followed, by id: those of the newest frame, and those that are lost or subsumed.
+    Span<const dp_track> tracks() const noexcept { return lent(dp_tracker_tracks, get()); }
+
+    /// The id of a label of the newest frame; 0 if there is no such label.
+    std::uint32_t id(std::uint16_t label) const noexcept { return dp_tracker_id(get(), label); }
+
+    /// The newest frame's label image with borders that do not flicker, width x height of the detection; null before the first.
+    const std::uint16_t *labels() const noexcept { return dp_tracker_labels(get()); }
+
+    const dp_tracker *get() const noexcept { return tracker_.get(); }
+    dp_tracker *get() noexcept { return tracker_.get(); }
+
+private:
+    struct Free {
+        void operator()(dp_tracker *tracker) const noexcept { dp_tracker_free(tracker); }
+    };
+    std::unique_ptr<dp_tracker, Free> tracker_;
+};
+
 /// Finds planes in the maps of one camera. Keep it for all frames. One thread at a time may use it.
 class Detector {
 public:
@@ -189,6 +270,16 @@ public:
 
     /// The planes of a map, written to a detection whose memory is used again.
     void detect(const Map &map, Detection &detection) { done(dp_detector_detect(get(), map.get(), detection.get())); }
+
+    /// The floor of the map that the detection is of, and what stands on it.
+    void ground(const Map &map, const Detection &detection, Ground &ground) {
+        done(dp_detector_ground(get(), map.get(), detection.get(), ground.get()));
+    }
+
+    /// Gives what was found in the next frame to a tracker, with the camera's pose if it is known.
+    void track(const Map &map, const Detection &detection, Tracker &tracker, const Pose *pose = nullptr) {
+        done(dp_detector_track(get(), map.get(), detection.get(), pose ? pose->front().data() : nullptr, tracker.get()));
+    }
 
     /// The points of a plane as they were measured, metres, of the map that the detection is of.
     std::vector<std::array<double, 3>> points(const Map &map, const Detection &detection, std::uint16_t label) {

@@ -3,7 +3,9 @@
 use crate::error::{Error, Result};
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char};
+use std::mem::MaybeUninit;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::ptr::null;
 
 /// Does something and makes an error of a panic, which must not reach C.
 pub(crate) fn guarded<T>(act: impl FnOnce() -> Result<T>) -> Result<T> {
@@ -37,6 +39,15 @@ pub(crate) unsafe fn text<'a>(argument: &str, pointer: *const c_char) -> Result<
 /// A text for C; it ends where it has a zero byte.
 pub(crate) fn for_c(text: &str) -> CString {
     CString::new(text.split('\0').next().unwrap_or_default()).expect("there is no zero byte in it")
+}
+
+/// Hands out values and, if that is wanted, their number; null if there are none.
+pub(crate) fn lent<T>(values: Option<&Vec<T>>, count: Option<&mut MaybeUninit<usize>>) -> *const T {
+    let values = values.filter(|values| !values.is_empty());
+    if let Some(count) = count {
+        count.write(values.map_or(0, Vec::len));
+    }
+    values.map_or(null(), |values| values.as_ptr())
 }
 
 thread_local! {

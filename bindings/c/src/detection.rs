@@ -1,6 +1,8 @@
 //! What was found in a map. Its memory is its own and is used again by the next detection that is written to it.
 
 use crate::border::for_c;
+use crate::error::{Error, Result};
+use crate::map::Pixels;
 use crate::outlines::Rings;
 use crate::plane::dp_plane;
 use depthplanes::outline::Outlines;
@@ -40,8 +42,17 @@ impl dp_detection {
         (self.found, self.sensor, self.is_filled) = (found, sensor, true);
     }
 
+    /// What was found in a map.
+    ///
+    /// # Errors
+    /// The detection is of a map of another size, or of none.
+    pub(crate) fn found_in(&self, map: &Pixels<'_>) -> Result<&Detection> {
+        let found = self.found().filter(|found| (found.width, found.height) == map.size());
+        found.ok_or_else(|| Error::invalid("the detection is not of this map; accepted: what was found in it"))
+    }
+
     /// What was found, if anything was looked for.
-    pub(crate) fn found(&self) -> Option<&Detection> {
+    fn found(&self) -> Option<&Detection> {
         self.is_filled.then_some(&self.found)
     }
 }

@@ -3,11 +3,14 @@
 use crate::border::{for_c, guarded, keep_last, last, required, text};
 use crate::detection::dp_detection;
 use crate::error::{Error, Result, dp_status};
+use crate::ground::dp_ground;
 use crate::map::{Pixels, dp_map};
 use crate::reader::{Read, Reader};
 use crate::settings::Settings;
+use crate::tracker::dp_tracker;
 use depthplanes::methods;
 use depthplanes::outline::Outliner;
+use depthplanes::track::CameraPose;
 use depthplanes::{Coplanar, Detection, Detector, Explanation, Intrinsics, Sensor, ValueKind, with_view};
 use depthplanes_io::outputs::Report;
 use depthplanes_io::{Frame, camera_file, doubts, encoding, memory, presets};
@@ -112,9 +115,7 @@ impl dp_detector {
         places: &mut [MaybeUninit<[f64; 3]>],
     ) -> Result<()> {
         let (map, sensor) = (map.checked()?, detection.sensor);
-        let found = detection.found().filter(|found| (found.width, found.height) == map.size());
-        let found =
-            found.ok_or_else(|| Error::invalid("the detection is not of this map; accepted: what was found in it"))?;
+        let found = detection.found_in(&map)?;
         let count = found.planes.len();
         let plane = found
             .plane(label)
@@ -138,6 +139,27 @@ impl dp_detector {
             }
         });
         Ok(())
+    }
+
+    fn ground(&mut self, map: &dp_map, detection: &dp_detection, ground: &mut dp_ground) -> Result<()> {
+        ground.clear();
+        let map = map.checked()?;
+        let found = detection.found_in(&map)?;
+        Ok(ground.find(self.read(&map)?.view()?, found, &detection.sensor)?)
+    }
+
+    fn track(
+        &mut self,
+        map: &dp_map,
+        detection: &dp_detection,
+        pose: Option<&[[f64; 4]; 3]>,
+        tracker: &mut dp_tracker,
+    ) -> Result<()> {
+        let map = map.checked()?;
+        let found = detection.found_in(&map)?;
+        let pose = pose.map(|rows| CameraPose::new(rows.map(|[x, y, z, _]| [x, y, z]), rows.map(|row| row[3])));
+        let pose = pose.transpose()?;
+        Ok(tracker.track(self.read(&map)?.view()?, found, &detection.sensor, pose.as_ref())?)
     }
 
     fn explain(&mut self, map: &dp_map, at: [usize; 2]) -> Result<()> {
@@ -342,6 +364,43 @@ pub unsafe extern "C" fn dp_detector_points(
         // SAFETY: there is room for as many, as the caller of C says; they may hold anything.
         let places = unsafe { std::slice::from_raw_parts_mut(start.cast::<MaybeUninit<[f64; 3]>>(), capacity) };
         detector.points(map, detection, label, places)
+    })
+}
+
+/// Finds the floor of a map by what was found in it, what stands on it, and what each plane is, and writes it to a ground,
+/// whatever it held before. If that fails, it holds nothing. The map is read again; it has to be the one that the detection is of.
+/// Needs unit and camera.
+#[unsafe(no_mangle)]
+pub extern "C" fn dp_detector_ground(
+    detector: Option<&mut dp_detector>,
+    map: Option<&dp_map>,
+    detection: Option<&dp_detection>,
+    ground: Option<&mut dp_ground>,
+) -> dp_status {
+    with(detector, |detector| {
+        let ground = required("ground", ground)?;
+        detector.ground(required("map", map)?, required("detection", detection)?, ground)
+    })
+}
+
+/// Gives what was found in the next frame of a camera to a tracker, by which planes keep their ids. `pose` is null, or the camera's
+/// pose if it is known: 12 numbers, row by row the first three rows of the matrix that takes camera coordinates to those of a
+/// world that stays the same, metres; of a matrix of 4 x 4 in row-major order they are the first 12. Without it the motion is
+/// estimated from the planes. The map is read again; it has to be the one that the
+/// detection is of. If it fails, the tracker stays as it was.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn dp_detector_track(
+    detector: Option<&mut dp_detector>,
+    map: Option<&dp_map>,
+    detection: Option<&dp_detection>,
+    pose: *const f64,
+    tracker: Option<&mut dp_tracker>,
+) -> dp_status {
+    with(detector, |detector| {
+        // SAFETY: it is null or leads to 12 numbers, as the caller of C says.
+        let pose = unsafe { pose.cast::<[[f64; 4]; 3]>().as_ref() };
+        let tracker = required("tracker", tracker)?;
+        detector.track(required("map", map)?, required("detection", detection)?, pose, tracker)
     })
 }
 

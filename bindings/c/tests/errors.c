@@ -138,6 +138,39 @@ static void after_detection(dp_detector *detector, dp_detection *detection)
     dp_detection_free(empty);
 }
 
+/* What a ground and a tracker refuse; a ground that failed holds nothing, a tracker stays as it was. */
+static void grounds_and_trackers(dp_detector *detector, dp_detection *detection)
+{
+    const dp_map half = {pixels, DP_UINT16, WIDTH, HEIGHT / 2, 0};
+    const double mirror[12] = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, still[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    dp_ground *ground = dp_ground_new();
+    dp_tracker *tracker = dp_tracker_new(0);
+    size_t count = 7;
+    CHECK(dp_detector_detect(detector, &wall, detection) == DP_OK);
+    CHECK(!dp_ground_floor(ground) && !dp_ground_marks(ground) && !dp_ground_planes(ground, &count) && count == 0);
+    CHECK(!dp_ground_obstacles(NULL, NULL) && !dp_ground_sectors(ground, NULL) && !dp_ground_steps(ground, NULL));
+    CHECK(!dp_tracker_tracks(tracker, &count) && !dp_tracker_labels(tracker) && dp_tracker_id(tracker, 1) == 0 && dp_tracker_id(NULL, 0) == 0);
+    REFUSED(detector, dp_detector_ground(detector, &wall, detection, ground), DP_NOT_METRIC, "floor");
+    REFUSED(detector, dp_detector_ground(detector, &half, detection, ground), DP_INVALID_ARGUMENT, "not of this map");
+    REFUSED(detector, dp_detector_ground(detector, &wall, detection, NULL), DP_NULL_POINTER, "ground");
+    REFUSED(detector, dp_detector_ground(detector, NULL, detection, ground), DP_NULL_POINTER, "map");
+    REFUSED(detector, dp_detector_track(detector, &wall, NULL, NULL, tracker), DP_NULL_POINTER, "detection");
+    REFUSED(detector, dp_detector_track(detector, &wall, detection, NULL, NULL), DP_NULL_POINTER, "tracker");
+    CHECK(dp_detector_track(detector, &wall, detection, still, tracker) == DP_OK && dp_tracker_id(tracker, 1) == 1);
+    REFUSED(detector, dp_detector_track(detector, &wall, detection, mirror, tracker), DP_INVALID_ARGUMENT, "mirrors");
+    REFUSED(detector, dp_detector_track(detector, &half, detection, NULL, tracker), DP_INVALID_ARGUMENT, "not of this map");
+    CHECK(dp_tracker_tracks(tracker, &count)->age == 1 && count == 1 && dp_tracker_labels(tracker)[0] == 1);
+    CHECK(dp_detector_track(detector, &wall, detection, NULL, tracker) == DP_OK && dp_tracker_tracks(tracker, NULL)->age == 2);
+    REFUSED((dp_detector *)NULL, dp_ground_set_up(ground, 0, 0, 0), DP_INVALID_ARGUMENT, "not all 0");
+    REFUSED((dp_detector *)NULL, dp_ground_set_camera_height(ground, -1), DP_INVALID_ARGUMENT, "above 0");
+    REFUSED((dp_detector *)NULL, dp_ground_set_up(NULL, 0, -1, 0), DP_NULL_POINTER, "ground");
+    CHECK(dp_ground_set_up(ground, 0, -1, 0) == DP_OK && dp_ground_set_camera_height(ground, 1.2) == DP_OK);
+    dp_tracker_free(tracker);
+    dp_tracker_free(NULL);
+    dp_ground_free(ground);
+    dp_ground_free(NULL);
+}
+
 int main(void)
 {
     for (size_t at = 0; at < WIDTH * HEIGHT; at++)
@@ -150,6 +183,7 @@ int main(void)
     maps(detector, detection);
     statements(detector);
     after_detection(detector, detection);
+    grounds_and_trackers(detector, detection);
     together();
     many_planes();
     /* Nothing of what was refused is left. */

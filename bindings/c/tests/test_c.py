@@ -81,6 +81,45 @@ def test_pixels_of_every_type_have_the_programs_labels(built, frames, program, t
     assert found.max() > 0 and np.array_equal(found, np.load(tmp_path / "labels.npy"))
 
 
+#: Classes of planes as the program names them, in the order of `dp_plane_class`.
+CLASSES = ["other", "floor", "ceiling", "wall", "table", "ramp", "step"]
+
+
+@pytest.mark.parametrize("with_poses", [True, False])
+@pytest.mark.parametrize("build, most", [("plain", 40), ("sanitized", 4)])
+def test_a_recorded_walk_has_the_programs_floor_and_ids(built, data, program, tmp_path, tell, build, most, with_poses):
+    video = data / "video_7scenes"
+    for frame, path in enumerate(sorted(video.glob("*.depth.png"))[:most]):
+        pixels = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+        pixels[pixels == 65535] = 0  # not measured; the program finds that out, and the library at its first map
+        pixels.tofile(tmp_path / f"{frame}.raw")
+        if with_poses:
+            shutil.copy(path.with_name(path.name.replace(".depth.png", ".pose.txt")), tmp_path / f"{frame}.pose")
+    camera = "585,585,320,240"
+    words = ["--intrinsics", camera, "--floor", "--frames", str(most), "--out", tmp_path / "t.jsonl", "--labels", tmp_path / "ids"]
+    program("track", video, *words, *([] if with_poses else ["--ignore-poses"]))
+    expected = [json.loads(line) for line in (tmp_path / "t.jsonl").read_text().splitlines()]
+    said = run(built / build / "walk", tmp_path, 640, 480, camera, tmp_path / "labels").stdout
+    found = [json.loads(line) for line in said.splitlines()]
+    labels = np.fromfile(tmp_path / "labels", np.uint16).reshape(-1, 480, 640)
+    assert len(found) == len(expected) == len(labels) == most
+    for frame, (mine, line) in enumerate(zip(found, expected, strict=True)):
+        planes, ground = sorted(line["planes"], key=lambda plane: plane["label"]), line["ground"]
+        assert mine["ids"][1:] == [plane["id"] for plane in planes] and mine["lost"][1:] == [plane["id"] for plane in line["lost"]]
+        by_id = sorted(planes, key=lambda plane: plane["id"])
+        assert np.allclose(mine["distances"][1:], [plane["distance_m"] for plane in by_id], rtol=1e-9)
+        floor = ground["floor"]
+        assert np.allclose(mine["floor"], [floor[name] for name in ("label", "height_m", "tilt_deg", "roll_deg")], rtol=1e-9)
+        assert mine["floor_pixels"] > 0.5 * floor["pixel_count"] and mine["steps"] == len(ground["steps"])
+        assert mine["classes"][1:] == [CLASSES.index(plane["class"]) for plane in ground["planes"]]
+        assert np.allclose(mine["obstacles"][1:], [obstacle["distance_m"] for obstacle in ground["obstacles"]])
+        assert np.allclose(mine["free"][1:], [sector["free_m"] for sector in ground["sectors"]])
+        ids = np.array(mine["ids"], np.int64)
+        ids[0] = 0
+        assert np.array_equal(ids[labels[frame]], cv2.imread(str(tmp_path / "ids" / f"{frame:06}.png"), cv2.IMREAD_UNCHANGED))
+    tell(f"{most} recorded frames have the program's floor, obstacles, ids and held borders{' with poses' if with_poses else ''}:")
+
+
 @pytest.mark.parametrize("build", ["plain", "sanitized"])
 @pytest.mark.parametrize("name", ["errors", "wrapper", "threads", "detect", "pcl", "opencv"])
 def test_programs_end_well(built, tmp_path, build, name):
