@@ -4,6 +4,7 @@
 //! piece when the input is done. So of what a killed run has begun only inputs without a line, or without their outputs, are done
 //! again, under the same names.
 
+use crate::checksum::fnv;
 use crate::failure::{Failure, Outcome, note};
 use crate::shard::Shard;
 use serde::{Deserialize, Serialize};
@@ -121,8 +122,7 @@ impl Manifest {
         let mut lines = HashMap::new();
         let mut end = 0;
         for (of, path) in paths.iter().enumerate().rev() {
-            let whole = read(path, of, settings, &mut lines)?;
-            end = whole; // that of this run comes last
+            end = read(path, of, settings, &mut lines)?; // that of this run comes last
         }
         // A line that a killed run has begun.
         file.set_len(end).map_err(machine)?;
@@ -138,7 +138,7 @@ impl Manifest {
     fn is_done(&self, input: &impl Named) -> Outcome<bool> {
         let Some(line) = self.line(&input.name())? else { return Ok(false) };
         let are_there = || line.outputs.iter().all(|output| self.folder.join(output).exists());
-        Ok(line.status == Status::Done && line.file == state(input) && are_there())
+        Ok(line.status == Status::Done && line.file == Seen::of(input).0 && are_there())
     }
 
     /// The inputs that are to be worked on. A note says how many are not.
@@ -163,11 +163,11 @@ impl Manifest {
         self.own.lock().unwrap_or_else(PoisonError::into_inner).lines.contains_key(&input.name())
     }
 
-    /// Notes what came of an input.
+    /// Notes what came of an input, which was as `seen` says before it was read: what changes meanwhile is done again.
     ///
     /// # Errors
     /// What the machine says.
-    pub(crate) fn add(&self, input: &impl Named, outcome: Result<&Entry<'_>, &Failure>) -> Outcome {
+    pub(crate) fn add(&self, input: &impl Named, seen: Seen, outcome: Result<&Entry<'_>, &Failure>) -> Outcome {
         let outputs = |entry: &Entry<'_>| {
             let below = entry.written.iter().filter_map(|path| path.strip_prefix(&self.folder).ok());
             below.map(Path::to_path_buf).collect()
@@ -176,7 +176,7 @@ impl Manifest {
         let line = Line {
             input: input.name(),
             status: if done.is_some() { Status::Done } else { Status::Failed },
-            file: state(input),
+            file: seen.0,
             counts: done.map(|done| done.counts),
             outputs: done.map(outputs).unwrap_or_default(),
             rows: done.map(|done| done.rows.to_string()).unwrap_or_default(),
@@ -184,8 +184,11 @@ impl Manifest {
         };
         let text = serde_json::to_string(&line).expect("text and numbers are always JSON") + "\n";
         let mut own = self.own.lock().unwrap_or_else(PoisonError::into_inner);
-        let written = own.file.write_all(text.as_bytes());
-        written.map_err(|error| Failure::machine(format!("{}: {error}", self.paths[0].display())))?;
+        own.file.write_all(text.as_bytes()).map_err(|error| {
+            // Half a line would keep the others from being read; where it cannot be taken back it stays.
+            let _ = own.file.set_len(own.end);
+            Failure::machine(format!("{}: {error}", self.paths[0].display()))
+        })?;
         let place = Place { of: 0, start: own.end, bytes: text.len() };
         own.end += text.len() as u64;
         own.lines.insert(line.input, place);
@@ -230,6 +233,12 @@ fn others(folder: &Path, own: &Path) -> std::io::Result<Vec<PathBuf>> {
 fn read(path: &Path, of: usize, settings: &Value, lines: &mut HashMap<String, Place>) -> Outcome<u64> {
     let text = fs::read(path).map_err(|error| Failure::machine(format!("{}: {error}", path.display())))?;
     let mut start = 0;
+    // A killed run may have begun the first line; nobody else's file begins so.
+    let first = json!({"schema": SCHEMA}).to_string();
+    let alike = first.bytes().take(first.len() - 1).zip(&text).all(|(own, byte)| own == *byte);
+    if !alike && !text.contains(&b'\n') {
+        return Err(no_manifest(path, "it has no line"));
+    }
     for line in text.split_inclusive(|&byte| byte == b'\n').filter(|line| line.ends_with(b"\n")) {
         if start == 0 {
             check_head(path, line, settings)?;
@@ -257,11 +266,27 @@ fn check_head(path: &Path, line: &[u8], settings: &Value) -> Outcome {
     })
 }
 
+/// Checksums of files that results depend on, by name: with other numbers in them the words mean something else.
+pub(crate) fn checksums<'a>(files: impl IntoIterator<Item = &'a Path>) -> Value {
+    let of = |path: &Path| Some((path.display().to_string(), format!("{:016x}", fnv(fs::read(path).ok()?)).into()));
+    Value::Object(files.into_iter().filter_map(of).collect())
+}
+
 fn no_manifest(path: &Path, why: &str) -> Failure {
     Failure::request(format!("{}: not a manifest ({why}); move it away, or use another --out-dir", path.display()))
 }
 
-/// Bytes and last change of an input's file, or of all files of its folder.
+/// What an input was when it was looked at: bytes and last change of its file, or of all files of its folder.
+#[derive(Clone, Copy)]
+pub(crate) struct Seen(Option<(u64, u64)>);
+
+impl Seen {
+    /// What it is now.
+    pub(crate) fn of(input: &impl Named) -> Self {
+        Seen(state(input))
+    }
+}
+
 fn state(input: &impl Named) -> Option<(u64, u64)> {
     let path = input.path()?;
     let (mut bytes, mut newest) = (0, 0);

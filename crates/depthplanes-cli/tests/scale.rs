@@ -173,6 +173,68 @@ fn results_of_other_words_are_not_mixed() {
 }
 
 #[test]
+fn what_the_words_do_not_say_counts_as_well() {
+    let bench = bench("scale_silent", 2);
+    // A camera file with other numbers in it is another camera.
+    bench.write("cam.txt", b"30,30,15.5,11.5");
+    let words = ["detect", "maps", "--camera", "cam.txt", "--out-dir", "out", "--only", "planes", "--resume"];
+    bench.run(&words).ok();
+    bench.run(&words).ok();
+    bench.write("cam.txt", b"15,15,15.5,11.5");
+    assert!(bench.run(&words).fails(2).contains("another files"), "another camera");
+    // Nothing tells one standard input from another.
+    let error = bench.shell("$DP detect - --out-dir s --resume <maps/0.pgm").fails(2);
+    assert!(error.contains("standard input"), "{error}");
+    // What nobody but a run of this program wrote stays.
+    std::fs::create_dir(bench.folder.join("mine")).unwrap();
+    bench.write("mine/manifest.jsonl", b"my own notes");
+    let error = bench.run(&["detect", "maps", "--out-dir", "mine", "--resume"]).fails(2);
+    assert!(error.contains("not a manifest"), "{error}");
+    assert_eq!(bench.read("mine/manifest.jsonl"), b"my own notes");
+    // A first line that a killed run has begun.
+    std::fs::create_dir(bench.folder.join("begun")).unwrap();
+    bench.write("begun/manifest.jsonl", b"{\"schema\":\"depthpl");
+    bench.run(&["detect", "maps", "--out-dir", "begun", "--only", "labels", "--resume"]).ok();
+    assert_eq!(lines(&bench, "begun/manifest.jsonl").len(), 2);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_input_that_is_replaced_while_it_is_worked_on_is_done_again() {
+    let bench = bench("scale_replaced", 1);
+    // The run has read the first bytes of a pipe of that name, which becomes a file before it is done.
+    let line = "rm maps/0.pgm; mkfifo maps/0.pgm; $DP detect maps/0.pgm --out-dir out --only labels --resume >/dev/null & child=$!; \
+                timeout 20 sh -c 'exec 3>maps/0.pgm; mv later maps/0.pgm; cat first >&3'; wait $child";
+    bench.write("first", &two_planes(1000));
+    bench.write("later", &two_planes(2000));
+    bench.shell(line).ok();
+    let again = bench.run(&["detect", "maps/0.pgm", "--out-dir", "out", "--only", "labels", "--resume"]);
+    assert!(!again.err.contains("are done already"), "{again:?}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_leaves_a_manifest_of_whole_lines() {
+    let bench = bench("scale_full", 20);
+    // Files may grow to a few lines of the manifest behind its head, which label images do not.
+    let words = ["detect", "maps", "--out-dir", "out", "--only", "labels", "--resume"];
+    bench.run(&words).ok();
+    let whole = bench.read("out/manifest.jsonl");
+    std::fs::remove_dir_all(bench.folder.join("out")).unwrap();
+    let head = whole.iter().position(|&byte| byte == b'\n').unwrap() + 1;
+    let ran = bench.shell(&format!("ulimit -f {}; $DP {}", head.div_ceil(512) + 1, words.join(" ")));
+    assert!(ran.code == Some(1) && ran.err.contains("manifest.jsonl"), "{ran:?}");
+    let left = bench.read("out/manifest.jsonl");
+    assert!(
+        left.ends_with(b"\n") && left.len() > head && whole.starts_with(&left),
+        "{}",
+        String::from_utf8_lossy(&left)
+    );
+    bench.run(&words).ok();
+    assert_eq!(bench.read("out/manifest.jsonl"), whole);
+}
+
+#[test]
 fn two_runs_do_not_work_on_the_same_inputs() {
     let bench = bench("scale_two", 2);
     // The first run waits for a pipe.

@@ -2,6 +2,7 @@
 
 use depthplanes::scene::{SceneFrame, ScenePixels};
 use depthplanes::{AnyView, DepthView, Pixel, Sensor, with_view};
+use std::cmp::Ordering;
 
 use crate::stereo::Stereo;
 
@@ -148,6 +149,9 @@ pub(crate) fn with_validity<'m>(
             view = view.missing_value(T::from_f64(missing));
         }
         if let Some((low, high)) = valid_range {
+            if low.partial_cmp(&high) != Some(Ordering::Less) {
+                return Err(depthplanes::Error::ValidRange { low, high }); // before NaN becomes a whole number
+            }
             view = view.valid_range(T::from_f64(low), T::from_f64(high))?;
         }
         Ok(view.into())

@@ -6,10 +6,10 @@ mod table;
 mod targets;
 
 use crate::args::Detect;
-use crate::failure::Outcome;
+use crate::failure::{Failure, Outcome};
 use crate::folders::make_folder;
 use crate::inputs::{self, Input};
-use crate::manifest::Manifest;
+use crate::manifest::{Manifest, Seen, checksums};
 use crate::may_close::MayClose;
 use crate::run::Recipe;
 use crate::runners::Runners;
@@ -53,7 +53,7 @@ fn run_to(wanted: &Detect, out: &mut dyn Write) -> Outcome {
     options.noise = load::noise_table(wanted.noise_table.as_deref())?.map(SensorNoise::Table);
     let form = wanted.table.as_deref().map(TableForm::of).transpose()?;
     let files = wanted.outputs.iter().filter(|(_, path)| !is_standard_output(path)).cloned().collect();
-    let manifest = manifest_of(wanted, &recipe, form)?;
+    let manifest = manifest_of(wanted, &inputs, &recipe, form)?;
     let due = match &manifest {
         Some(manifest) => manifest.due(&inputs)?,
         None => inputs.iter().collect(),
@@ -67,8 +67,9 @@ fn run_to(wanted: &Detect, out: &mut dyn Write) -> Outcome {
         let (plan, due, runners, manifest) = (&plan, &due, &runners, manifest.as_ref());
         move |at: usize| {
             let input = due[at];
+            let seen = manifest.map(|_| Seen::of(input)); // before it is read
             let outcome = plan.process(runners, input).map_err(|failure| failure.of_input(&input.name()));
-            manifest.map_or(Ok(()), |manifest| noted(manifest, input, &outcome)).and(outcome)
+            manifest.zip(seen).map_or(Ok(()), |(manifest, seen)| noted(manifest, input, seen, &outcome)).and(outcome)
         }
     };
     pool::in_order(due.len(), wanted.jobs, work, |_, done| {
@@ -97,8 +98,18 @@ fn run_to(wanted: &Detect, out: &mut dyn Write) -> Outcome {
 }
 
 /// The manifest, if a run is to go on.
-fn manifest_of(wanted: &Detect, recipe: &Recipe, form: Option<TableForm>) -> Outcome<Option<Manifest>> {
+fn manifest_of(
+    wanted: &Detect,
+    inputs: &[Input],
+    recipe: &Recipe,
+    form: Option<TableForm>,
+) -> Outcome<Option<Manifest>> {
     let Some(folder) = wanted.out_dir.as_ref().filter(|_| wanted.resume) else { return Ok(None) };
+    if inputs.contains(&Input::Standard) {
+        return Err(Failure::request(
+            "-: --resume cannot tell one standard input from another; accepted: files, folders, scenes",
+        ));
+    }
     make_folder(folder)?;
     let settings = json!({
         "command": "detect",
@@ -107,6 +118,7 @@ fn manifest_of(wanted: &Detect, recipe: &Recipe, form: Option<TableForm>) -> Out
         "parameters": recipe.named_values(),
         "reading": wanted.reading.words,
         "noise-table": wanted.noise_table,
+        "files": checksums(wanted.reading.camera.iter().chain(&wanted.noise_table).map(PathBuf::as_path)),
         "merge-coplanar": wanted.merge_coplanar,
         "outlines": wanted.outlines,
         "min-hole": wanted.min_hole,
@@ -119,9 +131,9 @@ fn manifest_of(wanted: &Detect, recipe: &Recipe, form: Option<TableForm>) -> Out
 }
 
 /// Notes in the manifest what came of an input.
-fn noted(manifest: &Manifest, input: &Input, outcome: &Outcome<Done>) -> Outcome {
+fn noted(manifest: &Manifest, input: &Input, seen: Seen, outcome: &Outcome<Done>) -> Outcome {
     let entry = outcome.as_ref().map(Done::entry);
-    manifest.add(input, entry.as_ref().map_err(|failure| *failure))
+    manifest.add(input, seen, entry.as_ref().map_err(|failure| *failure))
 }
 
 /// What is done with each input.

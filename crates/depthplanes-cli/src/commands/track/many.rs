@@ -8,14 +8,14 @@ use super::writer::Writer;
 use crate::args::Track;
 use crate::failure::{Failure, Outcome, say};
 use crate::folders::make_folder;
-use crate::manifest::{Counts, Entry, Manifest};
+use crate::manifest::{Counts, Entry, Manifest, Seen, checksums};
 use crate::may_close::MayClose;
 use crate::tally::Tally;
 use crate::terminal::plain;
 use crate::{pool, shard, signals};
 use serde_json::json;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicI32, Ordering};
 
 pub(super) fn run(wanted: &Track, folder: &Path, out: &mut dyn Write) -> Outcome {
@@ -60,6 +60,7 @@ fn settings(plan: &Plan<'_>) -> serde_json::Value {
         "parameters": recipe.named_values(),
         "reading": wanted.reading.words,
         "noise-table": wanted.noise_table,
+        "files": checksums(wanted.reading.camera.iter().chain(&wanted.noise_table).map(PathBuf::as_path)),
         "floor": wanted.floor,
         "up": format!("{:?}", wanted.up),
         "camera-height": wanted.camera_height,
@@ -105,6 +106,7 @@ impl Work<'_> {
     /// the next run makes them again.
     fn track(&self, source: &Source) -> Outcome<Progress> {
         let target = self.folder.join(&source.folder);
+        let seen = Seen::of(source); // before it is read
         let done = self.results(source, &target);
         if let Some(manifest) = &self.manifest {
             let written = [target];
@@ -114,7 +116,7 @@ impl Work<'_> {
                     Counts { planes: *planes as usize, frames: Some(pace.frames), failed_frames: Some(*failed) };
                 Entry { counts, written: &written, rows: "" }
             });
-            manifest.add(source, entry.as_ref().map_err(|failure| *failure))?;
+            manifest.add(source, seen, entry.as_ref().map_err(|failure| *failure))?;
         }
         let (progress, unfinished) = done?;
         unfinished.finish()?;
