@@ -20,9 +20,9 @@ SHARE = 0.005
 #: Numbers are no nearer to each other than this share of the picture's width; the larger plane has one.
 APART = 0.04
 #: Rows of the legend.
-ROWS = 16
-#: Inches along the longer side of a picture that has a figure of its own.
-INCHES = 8.0
+ROWS = 24
+#: Inches along the longer side of a picture that has a figure of its own, and of the legend beside it.
+INCHES, LEGEND_INCHES = 8.0, 1.8
 
 
 def plot(planes: Planes, ax: matplotlib.axes.Axes | None) -> matplotlib.axes.Axes:
@@ -32,7 +32,7 @@ def plot(planes: Planes, ax: matplotlib.axes.Axes | None) -> matplotlib.axes.Axe
     width, height = planes.size
     if ax is None and not pyplot.get_fignums():
         inches = INCHES * np.array([width, height]) / max(width, height)
-        _, ax = pyplot.subplots(figsize=inches, layout="constrained")
+        _, ax = pyplot.subplots(figsize=inches + [LEGEND_INCHES, 0], layout="constrained")
     ax = pyplot.gca() if ax is None else ax
     ax.imshow(planes.draw())
     ax.set_axis_off()
