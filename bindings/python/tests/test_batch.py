@@ -178,7 +178,7 @@ def test_a_run_that_is_killed_goes_on(frames, expected, tmp_path):
     part_files(out)[7].write_bytes(b"")  # as a machine that lost its power leaves it
     assert batch.run(frames, out, part=5, **OPTIONS).skipped == FRAMES - 5
     assert rows_in(out) == expected
-    assert batch.run(frames, out, part=5, **OPTIONS) == (FRAMES, 0, 0, 0, 100)
+    assert batch.run(frames, out, part=5, **OPTIONS) == (FRAMES, 0, 2 * FRAMES, 100, FRAMES)
 
 
 def test_a_frame_that_fails_is_a_row(frames, expected, program, tmp_path):
