@@ -26,11 +26,15 @@ fn states_unit(options: &ReadOptions) -> bool {
     counted || options.encoding.is_some() || options.disparity
 }
 
-/// Whether nobody has stated the frame's unit, or the rig that its disparities are of; its numbers are those of the file.
+/// Whether nobody has stated the frame's unit, or the rig that its disparities are of.
 fn is_open(frame: &Frame, options: &ReadOptions) -> bool {
-    let is_as_read = encoding::by_name(frame.encoding).is_ok_and(|encoding| !encoding.unpacks); // a scene has none
     let lacks_rig = frame.sensor.value_kind == ValueKind::Disparity && options.encoding.is_none();
-    is_as_read && !frame.provenance.ray_distance && (frame.provenance.is_guess() || lacks_rig)
+    is_as_read(frame) && !frame.provenance.ray_distance && (frame.provenance.is_guess() || lacks_rig)
+}
+
+/// Whether its numbers are those of the file, in an encoding that can be stated; a scene has none.
+fn is_as_read(frame: &Frame) -> bool {
+    encoding::by_name(frame.encoding).is_ok_and(|encoding| !encoding.unpacks)
 }
 
 /// Such a frame, read again as the options say.
@@ -61,7 +65,12 @@ fn completed(frame: &Frame, options: &ReadOptions) -> Result<Frame> {
             return Err(Error::Input(text));
         }
     }
-    let asked = again(frame, &ReadOptions { ray_distance: false, ..options.clone() })?;
+    let mut asking = ReadOptions { ray_distance: false, ..options.clone() };
+    if asking.encoding.is_none() && is_as_read(frame) {
+        asking.encoding = Some(frame.encoding.into());
+        asking.scale = asking.scale.or(frame.provenance.scale.filter(|_| asking.depth_scale.is_none()));
+    }
+    let asked = again(frame, &asking)?;
     let (known, stated) = (frame.sensor.value_kind, asked.sensor.value_kind);
     if states_unit(options) && known != stated {
         return Err(contradiction("unit", meaning(stated, asked.encoding), meaning(known, frame.encoding)));

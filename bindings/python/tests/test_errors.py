@@ -175,6 +175,12 @@ def test_what_a_frame_lacks_the_detector_states(tmp_path):
     expected = depthplanes.detect(path, unit="tum", camera=camera)
     for words in [{"unit": "tum"}, {"camera": camera}, {"depth_scale": 0.0002}, {"unit": "tum", "camera": camera}]:
         assert np.array_equal(depthplanes.detect(stated, **words).distances, expected.distances), words
+    np.save(tmp_path / "small.npy", (depth // 100).astype(np.uint8))
+    small = depthplanes.read(tmp_path / "small.npy", unit="mm", scale=10)
+    found = depthplanes.detect(small, camera=camera, noise_table=[(1, 0.01), (4, 0.02)])
+    assert found.distances[0] == pytest.approx(2, abs=0.1)
+    with pytest.raises(depthplanes.InputError, match="unit is .* by the detector, and .* by the frame"):
+        depthplanes.detect(small, camera=camera, scale=100)
     disparity = depthplanes.detect(depthplanes.read(path, unit="disparity"), baseline=0.1, camera=camera)
     assert np.array_equal(disparity.distances, depthplanes.detect(depth, unit="disparity", baseline=0.1, camera=camera).distances)
     assert depthplanes.detect(frame, camera=(58, 58, 63, 23.5)).notes, "an odd camera is told of"

@@ -37,11 +37,11 @@ CALLS = [
             "doffs": ["a"],
             "missing": ["a", [0, 1]],
             "valid_range": [3, (1, 2, 3), ("a", "b")],
-            "camera_size": [3, (1.5, 2), (0, 4), "4x3", (640, 480)],
+            "camera_size": [3, (1.5, 2), (0, 4), (2**70, 4), "4x3", (640, 480)],
             "rectified": ["no"],
             "swap_bytes": [1],
             "noise_table": [3, [(1, 2, 3)], ODD],
-            "threads": ["two", 0, -1, 1.5],
+            "threads": ["two", 0, -1, 1.5, 2**70],
             "curved": [1],
             "merge_coplanar": [3, (1, 2, 3), (91, 1)],
             "min_pixels": ["few", -1, None, (1, 2)],
@@ -73,7 +73,7 @@ CALLS = [
     (lambda index: PLANES[index], "index", [99, "a", 1.5, [99], [0.5], None]),
     (lambda **words: PLANES.polygons(0, **words), "metric", [1]),
     (lambda **words: PLANES.polygons(0, **words), "tolerance", ["a", -1]),
-    (lambda **words: PLANES.polygons(0, **words), "min_hole", ["a", -1, 1.5]),
+    (lambda **words: PLANES.polygons(0, **words), "min_hole", ["a", -1, 1.5, 2**70]),
     (lambda **words: PLANES.hull(0, **words), "metric", [1]),
     (lambda **words: PLANES.rectangle(0, **words), "metric", ["yes"]),
     (lambda u: PLANES.explain(u, 0), "u", ["a", -1, 64, 1.5]),
@@ -127,7 +127,7 @@ def test_what_is_wrong_is_refused_with_the_name_of_the_argument(tmp_path, monkey
 def test_a_keyword_that_there_is_not_is_told_the_one_that_was_meant():
     for call in (depthplanes.Detector, lambda **words: depthplanes.detect(FRAME, **words), lambda **words: batch.process("a.png", **words)):
         for wrong, right in {"cam": "camera", "senzor": "sensor", "minpixels": "min_pixels", "encoding": "unit", "intrinsics": "camera"}.items():
-            with pytest.raises(depthplanes.InputTypeError, match=f"there is no keyword {wrong}; did you mean {right}\\? there are: ") as raised:
+            with pytest.raises(depthplanes.InputTypeError, match=f"there is no keyword {wrong}; did you mean {right}\\? There are: ") as raised:
                 call(**{wrong: 1})
             for name in ("sensor", "camera", "unit", "method", "scale", "threads", "min_pixels", "inlier_threshold"):
                 assert f" {name}" in str(raised.value)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import operator
 import os
+import sys
 from typing import Any
 
 import numpy as np
@@ -50,14 +51,14 @@ def number(name: str, value: Any, *, least: float = -math.inf) -> float:
     return given
 
 
-def whole(name: str, value: Any, *, least: int, most: int | None = None) -> int:
+def whole(name: str, value: Any, *, least: int, most: int = sys.maxsize) -> int:
     """A whole number of a range."""
-    accepted = f"a whole number from {least}" + ("" if most is None else f" to {most}")
+    accepted = f"a whole number from {least}" + ("" if most == sys.maxsize else f" to {most}")
     try:
         given = operator.index(_scalar(value))
     except (TypeError, ValueError):
         raise wrong_type(name, value, accepted) from None
-    if given < least or (most is not None and given > most):
+    if not least <= given <= most:
         raise wrong_value(name, value, accepted)
     return given
 
@@ -110,7 +111,7 @@ def size(name: str, value: Any) -> tuple[int, int]:
         width, height = (operator.index(side) for side in value)
     except (TypeError, ValueError):
         raise wrong_type(name, value, accepted) from None
-    if width < 1 or height < 1:
+    if not (1 <= width <= sys.maxsize and 1 <= height <= sys.maxsize):
         raise wrong_value(name, value, accepted)
     return width, height
 

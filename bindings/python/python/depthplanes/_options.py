@@ -185,7 +185,8 @@ def _check(given: Iterable[str], known: Iterable[str], method: str | None = None
         else:
             near = FLAGS.get(name) or next(iter(difflib.get_close_matches(name, every, 1)), None)
             meant = f"; did you mean {near}?" if near else ""
-        raise InputTypeError(f"there is no keyword {name}{meant}{'' if meant.endswith('?') else ';'} there are: {', '.join(every)}")
+        there_are = " There are" if meant.endswith("?") else "; there are"
+        raise InputTypeError(f"there is no keyword {name}{meant}{there_are}: {', '.join(every)}")
 
 
 @functools.cache

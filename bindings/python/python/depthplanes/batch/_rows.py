@@ -57,7 +57,7 @@ class Processor:
         planes, _ = self.detector._find(frame)
         record = planes.to_dict()
         row = {name: record[name] for name in ("width", "height", "valid_pixels")}
-        row |= {"notes": record["warnings"], "planes": _rows_of(planes)}
+        row |= {"notes": planes.notes, "planes": _rows_of(planes)}
         if self._labels is not None:
             row["labels"] = _write_labels(self._labels, path, planes)
         return row
