@@ -28,12 +28,10 @@ pub(crate) enum Borrowed<'py> {
 pub(crate) fn borrow<'py>(array: &Bound<'py, PyAny>) -> Result<(Bound<'py, PyAny>, Borrowed<'py>)> {
     let untyped = array.cast::<PyUntypedArray>().map_err(PyErr::from)?;
     if untyped.ndim() != 2 {
-        let shape: Vec<String> = untyped.shape().iter().map(usize::to_string).collect();
-        let text = format!(
-            "the array has the shape ({}); accepted: a map of two dimensions, (height, width)",
-            shape.join(", ")
-        );
-        return Err(Error::Input(text));
+        let shape = array.getattr(intern!(array.py(), "shape"))?;
+        return Err(Error::Input(format!(
+            "depth is an array of the shape {shape}; accepted: a map of two dimensions, (height, width)"
+        )));
     }
     if let Some(map) = typed(array) {
         if map.pixels().is_some() {
@@ -117,7 +115,7 @@ fn of_other(py: Python<'_>, array: &Bound<'_, PyUntypedArray>, options: &ReadOpt
     let sample = if code.starts_with('>') { format!("{name}-be") } else { name.clone() };
     if !formats::raw_types().any(|known| known == sample) {
         let accepted = "uint8, uint16, float32 and float64, and the other integers and floats of up to 64 bits";
-        return Err(Error::Type(format!("the array is of type {name}; accepted: {accepted}")));
+        return Err(Error::Type(format!("depth is an array of {name}; accepted: {accepted}")));
     }
     let size = (array.shape()[1], array.shape()[0]);
     let bytes = array.call_method0(intern!(py, "tobytes"))?;

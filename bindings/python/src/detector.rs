@@ -1,7 +1,8 @@
 //! A detector for the maps of one camera.
 
+use crate::agreed::agreed;
 use crate::array::{Borrowed, borrow, fingerprint};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::found::{Found, Map};
 use crate::frame::Frame;
 use crate::pool::{Lent, Pool};
@@ -63,10 +64,14 @@ impl Detector {
         self.detect_copied(py, map)
     }
 
-    /// The planes of a map that was read.
+    /// The planes of a map that was read, and knows what was stated then.
     fn detect_frame(&self, py: Python<'_>, frame: &Frame) -> Result<Found> {
-        let lent = py.detach(|| self.find(&frame.frame))?;
-        Ok(Found::new(lent, Map::Frame(frame.frame.clone()), frame.frame.sensor, &frame.source))
+        let (lent, map) = py.detach(|| {
+            let map = agreed(&frame.frame, &self.options)?;
+            Ok::<_, Error>((self.find(&map)?, map))
+        })?;
+        let sensor = map.sensor;
+        Ok(Found::new(lent, Map::Frame(map), sensor, &frame.source))
     }
 
     /// Reads a file and finds its planes.

@@ -1,7 +1,6 @@
-//! Errors of the library as exceptions of Python, with the same text: by whose fault it is.
+//! Errors of the library as exceptions of Python, by whose fault it is, with the library's text in Python's words.
 
 use depthplanes_io::outputs::OutputError;
-use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use std::io;
 
@@ -13,7 +12,7 @@ pub(crate) enum Error {
     Type(String),
     /// A file that the system refuses: `FileError`, an `OSError`.
     File(String, io::ErrorKind),
-    /// Memory that cannot be had.
+    /// Memory that cannot be had: `OutOfMemoryError`, a `MemoryError`.
     Memory(String),
     /// What Python itself raised.
     Python(PyErr),
@@ -29,18 +28,20 @@ impl From<Error> for PyErr {
             Error::Type(text) => raised("InputTypeError", text),
             Error::File(text, io::ErrorKind::NotFound) => raised("MissingFileError", text),
             Error::File(text, _) => raised("FileError", text),
-            Error::Memory(text) => PyMemoryError::new_err(text),
+            Error::Memory(text) => raised("OutOfMemoryError", text),
             Error::Python(error) => error,
         }
     }
 }
 
-/// The exception of that name in the package.
+/// The exception of that name in the package, which speaks of keywords where the library speaks of flags.
 fn raised(name: &str, text: String) -> PyErr {
     Python::attach(|py| {
-        let class = py.import("depthplanes._errors").and_then(|errors| errors.getattr(name));
-        let made = class.and_then(|class| class.call1((text,)));
-        made.map_or_else(|error| error, PyErr::from_value)
+        let made = || {
+            let text = py.import("depthplanes._words")?.call_method1("in_python", (text,))?;
+            py.import("depthplanes._errors")?.getattr(name)?.call1((text,))
+        };
+        made().map_or_else(|error| error, PyErr::from_value)
     })
 }
 

@@ -148,16 +148,10 @@ fn unchanged(map: &Borrowed<'_>, mark: u64, found: &Detection) -> Result<()> {
     if is_same { Ok(()) } else { Err(Error::Input(text.into())) }
 }
 
-/// The columns and the pixels of a picture.
-fn base(picture: &PyReadonlyArray3<'_, u8>) -> Result<(usize, Vec<[u8; 3]>)> {
+/// The columns and the pixels of a picture of three channels.
+fn base(picture: &PyReadonlyArray3<'_, u8>) -> (usize, Vec<[u8; 3]>) {
     let picture = picture.as_array();
-    let (height, width, channels) = picture.dim();
-    if channels != 3 {
-        let text =
-            format!("the picture has the shape ({height}, {width}, {channels}); accepted: (height, width, 3), uint8");
-        return Err(Error::Input(text));
-    }
-    Ok((width, picture.rows().into_iter().map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()))
+    (picture.dim().1, picture.rows().into_iter().map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect())
 }
 
 /// The output of that name.
@@ -351,14 +345,14 @@ impl Found {
         self.report(py, source, outlines, legend, |report| Ok(outputs::write_all(report, &wanted)?))
     }
 
-    /// The picture of the map, or another one, with the planes in colour.
+    /// The picture of the map, or another one, (height, width, 3), with the planes in colour.
     fn overlay<'py>(
         &self,
         py: Python<'py>,
         picture: Option<PyReadonlyArray3<'py, u8>>,
     ) -> Result<Bound<'py, PyArray3<u8>>> {
         let ((width, height), frame) = (self.size(), self.frame(py)?);
-        let picture = picture.map(|picture| base(&picture)).transpose()?;
+        let picture = picture.map(|picture| base(&picture));
         let pixels = py.detach(|| {
             Ok::<_, Error>(outputs::overlay_pixels(frame.view()?, &self.sensor, self.detection(), picture)?)
         })?;

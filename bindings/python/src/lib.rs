@@ -3,6 +3,7 @@
 //! Arrays go in and out without a copy where their rows lie in memory as maps do. Every call that takes time lets other
 //! threads of Python run.
 
+mod agreed;
 mod array;
 mod detector;
 mod error;

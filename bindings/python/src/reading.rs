@@ -82,11 +82,6 @@ impl Reading {
         options.check()?;
         Ok(Reading { options: options.rig(focal, baseline, doffs)? })
     }
-
-    /// Whether anything is stated.
-    fn is_empty(&self) -> bool {
-        self.options == ReadOptions::default()
-    }
 }
 
 fn noise(given: Noise) -> Result<SensorNoise> {

@@ -16,6 +16,19 @@ sys.path.append(str(ROOT / "tests"))
 from shared_fixtures import data, tell  # noqa: E402, F401
 
 
+@pytest.fixture(scope="session", autouse=True)
+def no_flags():
+    """No error that a test comes across speaks of the program's flags."""
+
+    def checked(error, *words, **named):
+        assert not any("--" in str(word) for word in words), words
+        super(depthplanes.Error, error).__init__(*words, **named)
+
+    depthplanes.Error.__init__ = checked
+    yield
+    del depthplanes.Error.__init__
+
+
 @pytest.fixture(scope="session")
 def program():
     """Runs the program that cargo built, not the package's; returns what it ended with."""

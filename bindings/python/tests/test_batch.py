@@ -16,6 +16,7 @@ import pytest
 
 import depthplanes
 from depthplanes import batch
+from depthplanes._words import in_python
 
 FRAMES = 500
 OPTIONS = {"unit": "mm", "camera": (58.0, 58.0, 31.5, 23.5)}
@@ -83,7 +84,7 @@ def wait_for_parts(out, count):
 
 def test_threads_give_the_rows_of_one_frame_after_the_other(frames, expected, tmp_path):
     found = batch.run(pathlib.Path(frames[0]).parent, tmp_path / "out", labels=tmp_path / "labels", part=64, **OPTIONS)
-    assert found == (FRAMES, FRAMES, 0, 2 * FRAMES, 8) and len(part_files(tmp_path / "out")) == 8
+    assert found == batch.Summary(frames=FRAMES, failed=0, planes=2 * FRAMES, parts=8, skipped=0) and len(part_files(tmp_path / "out")) == 8
     rows = rows_in(tmp_path / "out")
     for row, path in zip(rows[::50], frames[::50], strict=True):
         labels = depthplanes.read(row["labels"], unit="grey").depth
@@ -114,7 +115,7 @@ def killed_meanwhile(paths, out, **options):
     yield
     assert len(part_files(out)) < parts, "the run was over before the kill"
     thread.join(180)
-    assert [(found.frames, found.done, found.parts) for found in said] == [(len(paths), len(paths), parts)]
+    assert [(found.frames, found.skipped, found.parts) for found in said] == [(len(paths), 0, parts)]
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -135,7 +136,7 @@ def test_a_worker_of_dask_that_is_killed_loses_nothing(engine, all_frames, tmp_p
 @pytest.mark.filterwarnings("ignore")
 def test_dask_starts_workers_where_there_is_no_cluster(engine, frames, expected, tmp_path):
     engine("distributed")
-    assert batch.run(frames[:40], tmp_path / "out", engine="dask", workers=2, part=10, **OPTIONS).done == 40
+    assert batch.run(frames[:40], tmp_path / "out", engine="dask", workers=2, part=10, **OPTIONS) == (40, 0, 80, 4, 0)
     assert rows_in(tmp_path / "out") == expected[:40]
 
 
@@ -172,29 +173,39 @@ def test_a_run_that_is_killed_goes_on(frames, expected, tmp_path):
         batch.read_rows(out)
     assert batch.read_rows(out, partial=True).num_rows == 5 * len(there)
     found = batch.run(frames, out, part=5, **OPTIONS)
-    assert (found.frames, found.done, found.parts) == (FRAMES, FRAMES - 5 * len(there), 100)
+    assert found == (FRAMES, 0, 2 * FRAMES, 100, 5 * len(there))
     assert all(path.stat().st_mtime_ns == then for path, then in there.items())
     part_files(out)[7].write_bytes(b"")  # as a machine that lost its power leaves it
-    assert batch.run(frames, out, part=5, **OPTIONS).done == 5
+    assert batch.run(frames, out, part=5, **OPTIONS).skipped == FRAMES - 5
     assert rows_in(out) == expected
-    assert batch.run(frames, out, part=5, **OPTIONS) == (FRAMES, 0, 0, 0, 100)
+    assert batch.run(frames, out, part=5, **OPTIONS) == (FRAMES, 0, 2 * FRAMES, 100, FRAMES)
 
 
 def test_a_frame_that_fails_is_a_row(frames, expected, program, tmp_path):
     (tmp_path / "broken.png").write_bytes(pathlib.Path(frames[0]).read_bytes()[:100])
     (tmp_path / "empty.png").touch()
     paths = [frames[0], *(str(tmp_path / name) for name in ("broken.png", "empty.png", "nothing.png")), frames[1]]
-    assert batch.run(paths, tmp_path / "out", part=2, labels=tmp_path / "labels", **OPTIONS) == (5, 5, 3, 4, 3)
+    assert batch.run(paths, tmp_path / "out", part=2, labels=tmp_path / "labels", **OPTIONS) == (5, 3, 4, 3, 0)
     rows = rows_in(tmp_path / "out")
     assert [row["path"] for row in rows] == paths
     assert [row["planes"] for row in rows[::4]] == [row["planes"] for row in expected[:2]]
     for row in rows[1:4]:
         said = program("detect", row["path"], check=False).stderr.decode().removeprefix("error: ").strip()
-        assert row["error"] == said and row["planes"] == [] and row["width"] is None and row["labels"] is None
+        assert row["error"] == in_python(said) and row["planes"] == [] and row["width"] is None and row["labels"] is None
     picture(tmp_path / "broken.png", 1)
-    assert batch.run(paths, tmp_path / "out", part=2, labels=tmp_path / "labels", **OPTIONS).done == 0
+    assert batch.run(paths, tmp_path / "out", part=2, labels=tmp_path / "labels", **OPTIONS) == (5, 3, 4, 3, 5)
     again = batch.run(paths, tmp_path / "out", part=2, labels=tmp_path / "labels", retry_failed=True, **OPTIONS)
-    assert (again.done, again.failed) == (4, 2) and rows_in(tmp_path / "out")[1]["planes"] == expected[1]["planes"]
+    assert again == (5, 2, 6, 3, 1) and rows_in(tmp_path / "out")[1]["planes"] == expected[1]["planes"]
+
+
+def test_what_reads_folders_of_parquet_reads_the_results(engine, frames, expected, tmp_path):
+    pandas, dataset = engine("pandas"), engine("pyarrow.dataset")
+    out = tmp_path / "out"
+    batch.run(frames[:10], out, part=4, **OPTIONS)
+    (out / ".part-00003.parquet.0.partial").write_bytes(b"of a worker that was killed")
+    table = pandas.read_parquet(out)
+    assert table.path.tolist() == frames[:10] and [len(planes) for planes in table.planes] == [2] * 10
+    assert dataset.dataset(out).to_table().to_pylist() == expected[:10] == rows_in(out)
 
 
 def test_results_of_other_settings_are_not_mixed(frames, tmp_path):
@@ -213,15 +224,20 @@ def test_results_of_other_settings_are_not_mixed(frames, tmp_path):
     ]:
         with pytest.raises(depthplanes.InputError, match=f"has results of other settings.*{what}.*another folder"):
             batch.run(frames[:10], tmp_path / "out", **({"part": 5} | words | others))
-    with pytest.raises(depthplanes.InputError, match="frames: 10 instead of 11; frames_sha256"):
-        batch.run(frames[:11], tmp_path / "out", part=5, **words)
+    for others, what in [
+        (frames[:13], "of 10 frames, since then 3 were added and 0 have gone; accepted: the frames of then, or another folder"),
+        (frames[2:11], "of 10 frames, since then 1 were added and 2 have gone"),
+        (frames[:10][::-1], "of 10 frames, which were in another order"),
+    ]:
+        with pytest.raises(depthplanes.InputError, match=what):
+            batch.run(others, tmp_path / "out", part=5, **words)
     default = depthplanes.Detector().parameters["min_pixels"]
-    assert batch.run(frames[:10], tmp_path / "out", part=5, threads=2, min_pixels=default, workers=1, **words).done == 0
+    assert batch.run(frames[:10], tmp_path / "out", part=5, threads=2, min_pixels=default, workers=1, **words).skipped == 10
     camera.write_text(camera.read_text().replace("23.5", "24.5"))
     with pytest.raises(depthplanes.InputError, match="files_sha256"):
         batch.run(frames[:10], tmp_path / "out", part=5, **words)
     assert [path.stat().st_mtime_ns for path in part_files(tmp_path / "out")] == before
-    (tmp_path / "out" / "batch.json").write_text("hello")
+    (tmp_path / "out" / "_batch.json").write_text("hello")
     with pytest.raises(depthplanes.InputError, match="not of depthplanes.batch"):
         batch.run(frames[:10], tmp_path / "out", part=5, **words)
 
@@ -230,12 +246,12 @@ def test_words_that_are_not_accepted_are_refused_before_any_work(frames, tmp_pat
     out = tmp_path / "out"
     for words, what in [
         ({"engine": "spark"}, "'local', 'dask', 'ray'"),
-        ({"part": 0}, "part=0; accepted: a whole number from 1"),
-        ({"workers": 1.5}, "workers=1.5"),
+        ({"part": 0}, "part is 0; accepted: a whole number from 1"),
+        ({"workers": 1.5}, "workers is 1.5"),
         ({"client": object()}, 'accepted: engine="dask"'),
         ({"unit": "inch"}, "millimetre"),
-        ({"min_pixels": -1}, "min-pixels"),
-        ({"frob": 1}, "there is no parameter `frob`"),
+        ({"min_pixels": -1}, "min_pixels"),
+        ({"frob": 1}, "there is no keyword frob"),
     ]:
         with pytest.raises(depthplanes.Error, match=what):
             batch.run(frames[:1], out, **words)
@@ -246,6 +262,9 @@ def test_words_that_are_not_accepted_are_refused_before_any_work(frames, tmp_pat
         ([frames[0], frames[0]], "is there 2 times"),
     ]:
         with pytest.raises(depthplanes.InputError, match=what):
+            batch.run(paths, out)
+    for paths in ("nofolder", ["nofolder"], "nothing.png", "memory://nofolder", "memory://nothing.png"):
+        with pytest.raises(depthplanes.MissingFileError, match="no(folder|thing.png): there is no such file or folder"):
             batch.run(paths, out)
     with pytest.raises(depthplanes.InputError, match="has no results"):
         batch.read_rows(out)
@@ -271,7 +290,7 @@ def test_frames_and_results_may_be_behind_urls(engine, frames, expected, tmp_pat
         image = fsspec.open(rows[3]["labels"]).open().read()
         assert np.array_equal(depthplanes.read(image, unit="grey").depth, depthplanes.detect(frames[3], **OPTIONS).labels)
         assert rows[3] == batch.process(rows[3]["path"], labels="memory://batch/labels", **OPTIONS)
-        assert batch.run(paths, out, labels="memory://batch/labels", part=8, **OPTIONS).done == 0
+        assert batch.run(paths, out, labels="memory://batch/labels", part=8, **OPTIONS) == (20, 0, 40, 3, 20)
     assert "nothing.png" in batch.process("memory://batch/nothing.png")["error"]
     assert not [path for path in memory.find("/batch") if path.endswith(".partial")]
 
@@ -300,12 +319,12 @@ try:
 except MissingPackageError as error:
     print(error)
 """
-    for missing, package in [
-        ("pyarrow,fsspec,local", "pyarrow"),
-        ("fsspec,local", "fsspec"),
-        ("distributed,dask", "dask[distributed]"),
-        ("ray", "ray[data]"),
+    for missing, package, extra in [
+        ("pyarrow,fsspec,local", "pyarrow", "batch"),
+        ("fsspec,local", "fsspec", "batch"),
+        ("distributed,dask", "dask[distributed]", "dask"),
+        ("ray", "ray[data]", "ray"),
     ]:
         words = [sys.executable, "-W", "ignore", "-c", code, missing, tmp_path / missing, frames[0]]
         ran = subprocess.run(words, capture_output=True, text=True, check=True)
-        assert f"pip install {package}" in ran.stdout, (missing, ran.stdout)
+        assert f"needs the package `{package}`" in ran.stdout and f"pip install 'depthplanes[{extra}]'" in ran.stdout, (missing, ran.stdout)

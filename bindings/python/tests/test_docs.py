@@ -62,7 +62,7 @@ def test_the_snippets_on_many_frames_run(batch_page, engine):
         names = {}
         for snippet in snippets(batch_page):
             exec(compile(snippet, "docs/batch.md", "exec"), names)
-    assert names["found"] == (8, 8, 0, 520, 2) and names["rows"].num_rows == 8 and len(names["planes"]) == 520
+    assert names["found"] == (8, 0, 520, 2, 0) and names["rows"].num_rows == 8 and len(names["planes"]) == 520
 
 
 def test_arrays_of_slurm_and_jobs_of_kubernetes_make_all_parts(batch_page, engine, tmp_path):

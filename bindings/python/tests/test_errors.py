@@ -1,5 +1,6 @@
-"""What is wrong is said in the program's words, with exceptions that Python's own are above."""
+"""What is wrong is said as the program says it, in Python's words, with exceptions that Python's own are above."""
 
+import io
 import pickle
 import subprocess
 import sys
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 
 import depthplanes
+from depthplanes._words import in_python
 
 DEPTH = np.full((48, 64), 2000, np.uint16)
 
@@ -32,21 +34,43 @@ def said(program, *words):
         (["--merge-coplanar=91,1"], {"merge_coplanar": (91, 1)}),
     ],
 )
-def test_values_are_refused_in_the_programs_words(program, tmp_path, words, options):
+def test_values_are_refused_as_the_program_refuses_them(program, tmp_path, words, options):
     path = tmp_path / "map.npy"
     np.save(path, DEPTH)
     theirs = said(program, "detect", path, *words)
     with pytest.raises(ValueError) as raised:
         depthplanes.detect(path, **options)
     assert isinstance(raised.value, depthplanes.InputError)
-    assert str(raised.value).removeprefix(f"{path}: ") == theirs.removeprefix(f"{path}: ")
+    assert str(raised.value).removeprefix(f"{path}: ") == in_python(theirs.removeprefix(f"{path}: "))
+
+
+@pytest.mark.parametrize(
+    "text, expected",
+    [
+        ("--preset is `realsense`; accepted: kinect1", "sensor is `realsense`; accepted: kinect1"),
+        ("parameter `min-pixels` is -1", "parameter `min_pixels` is -1"),
+        ("read as `inverse-depth`", "read as `inverse-depth`"),
+        ("state --encoding or --scale if it is not, --encoding millimetre if it is", 'state unit or scale if it is not, unit="millimetre" if it is'),
+        ("try --scale 16 or 256, or --missing -1.", "try scale=16 or 256, or missing=-1."),
+        ("give --intrinsics fx,fy,cx,cy, --camera FILE or --preset SENSOR", "give camera=(fx, fy, cx, cy), camera=FILE or sensor=SENSOR"),
+        ("check --intrinsics and --camera", "check camera"),
+        ("--intrinsics=58,58.5,31.5,23; --camera-size 640x480", "camera=(58, 58.5, 31.5, 23); camera_size=(640, 480)"),
+        ("the size with --raw-size WIDTHxHEIGHT", "the size with raw_size=(WIDTH, HEIGHT)"),
+        ("undone; --rectified if the map is; --rectified=no undoes it", "undone; rectified=True if the map is; rectified=False undoes it"),
+        ("try --preset kinect1-raw, or --encoding kinect-raw", 'try sensor="kinect1-raw", or unit="kinect-raw"'),
+        ("try --swap-bytes", "try swap_bytes=True"),
+        ("a curved surface; see `detect --curved`.", "a curved surface; see `curved=True`."),
+    ],
+)  # fmt: skip
+def test_flags_are_keywords(text, expected):
+    assert in_python(text) == expected
 
 
 def test_names_are_listed_where_one_is_unknown():
     for options, name in [({"sensor": "kinect9"}, "kinect1"), ({"unit": "inch"}, "millimetre"), ({"method": "magic"}, "ransac")]:
         with pytest.raises(depthplanes.InputError, match=name):
             depthplanes.Detector(**options)
-    with pytest.raises(TypeError, match="there is no parameter `frob`; there are: ") as raised:
+    with pytest.raises(TypeError, match="there is no keyword frob; there are: ") as raised:
         depthplanes.Detector(frob=1)
     assert isinstance(raised.value, depthplanes.InputTypeError)
     with pytest.raises(TypeError):
@@ -60,9 +84,11 @@ def test_what_is_no_map_is_refused():
     for shape in [(3,), (2, 3, 4), (0, 5), (5, 0)]:
         with pytest.raises(ValueError):
             detector(np.zeros(shape, np.uint16))
+    with pytest.raises(depthplanes.InputError, match=r"the shape \(100,\); accepted: .*\(height, width\)"):
+        detector(np.zeros(100, np.uint16))
     with pytest.raises(TypeError, match="accepted: uint8, uint16, float32"):
         detector(np.zeros((4, 4), complex))
-    with pytest.raises(TypeError, match="type bool"):
+    with pytest.raises(TypeError, match="array of bool"):
         detector(np.zeros((4, 4), bool))
     with pytest.raises(TypeError):
         detector(None)
@@ -90,7 +116,7 @@ def test_files_that_are_not_there_are_missing_files(program, tmp_path):
     (tmp_path / "text.png").write_text("no map")
     with pytest.raises(depthplanes.InputError) as raised:
         depthplanes.read(tmp_path / "text.png")
-    assert str(raised.value) == said(program, "detect", tmp_path / "text.png")
+    assert str(raised.value) == in_python(said(program, "detect", tmp_path / "text.png"))
 
 
 def test_bytes_are_read_as_their_file_is(data, tmp_path):
@@ -105,6 +131,13 @@ def test_bytes_are_read_as_their_file_is(data, tmp_path):
             depthplanes.read(broken)
         said.append(str(raised.value))
     assert said[0].removeprefix(f"{tmp_path}/broken.png: ") == said[1].removeprefix("bytes: ")
+    for file, name in [(open(path, "rb"), str(path)), (io.BytesIO(path.read_bytes()), "bytes")]:
+        with file:
+            frame = depthplanes.read(file, unit="mm")
+        assert np.array_equal(frame.depth, memory.depth) and frame.source == name
+    assert np.array_equal(depthplanes.read(bytearray(path.read_bytes()), unit="mm").depth, memory.depth)
+    with open(path, encoding="latin-1") as file, pytest.raises(depthplanes.InputTypeError, match='open\\(path, "rb"\\)'):
+        depthplanes.read(file)
     with pytest.raises(depthplanes.InputError, match="name='a' is for bytes"):
         depthplanes.read(path, name="a")
     with pytest.raises(depthplanes.InputError):
@@ -118,14 +151,49 @@ def test_nothing_is_written_if_one_name_is_wrong(planes, tmp_path):
         planes.write(planes=tmp_path / "planes.json", labels=tmp_path / "no" / "labels.png")
     with pytest.raises(depthplanes.InputError, match="overwrite"):
         planes.write(planes=tmp_path / "one.json", cloud=tmp_path / "one.ply", mesh=tmp_path / "one.ply")
+    with pytest.raises(depthplanes.InputError, match="there is no file to write; accepted: any of labels, overlay, planes"):
+        planes.write()
     assert list(tmp_path.iterdir()) == []
     depthplanes.write(planes, labels=tmp_path / "labels.png")
     assert np.array_equal(depthplanes.read(tmp_path / "labels.png", unit="grey").depth, planes.labels)
 
 
-def test_a_frame_brings_its_own_words(room):
-    with pytest.raises(depthplanes.InputError, match="knows its sensor, camera and unit"):
-        depthplanes.detect(room, unit="mm")
+@pytest.mark.filterwarnings("ignore::depthplanes.ReadingWarning")
+def test_what_a_frame_lacks_the_detector_states(tmp_path):
+    camera, path = (58, 58, 31.5, 23.5), tmp_path / "map.npy"
+    depth = 2000 + np.arange(64, dtype=np.uint16) + np.zeros((48, 64), np.uint16)
+    np.save(path, depth)
+    frame = depthplanes.read(path)
+    assert frame.camera is None
+    for words in [{"camera": camera}, {"camera": camera, "unit": "tum"}, {"camera": camera, "scale": 500}, {"camera": camera, "sensor": "tum-fr1"},
+                  {"unit": "disparity", "baseline": 0.1, "camera": camera}, {"camera": camera, "missing": 2000}]:  # fmt: skip
+        expected = depthplanes.detect(depth, **words)
+        for found in (depthplanes.detect(frame, **words), depthplanes.Detector(**words)(frame)):
+            assert np.array_equal(found.labels, expected.labels) and np.array_equal(found.normals, expected.normals), words
+            assert np.array_equal(found.points(0), expected.points(0)) and not np.isnan(found.distances).any(), words
+    stated = depthplanes.read(path, unit="tum", camera=camera)
+    expected = depthplanes.detect(path, unit="tum", camera=camera)
+    for words in [{"unit": "tum"}, {"camera": camera}, {"depth_scale": 0.0002}, {"unit": "tum", "camera": camera}]:
+        assert np.array_equal(depthplanes.detect(stated, **words).distances, expected.distances), words
+    np.save(tmp_path / "small.npy", (depth // 100).astype(np.uint8))
+    small = depthplanes.read(tmp_path / "small.npy", unit="mm", scale=10)
+    found = depthplanes.detect(small, camera=camera, noise_table=[(1, 0.01), (4, 0.02)])
+    assert found.distances[0] == pytest.approx(2, abs=0.1)
+    with pytest.raises(depthplanes.InputError, match="unit is .* by the detector, and .* by the frame"):
+        depthplanes.detect(small, camera=camera, scale=100)
+    disparity = depthplanes.detect(depthplanes.read(path, unit="disparity"), baseline=0.1, camera=camera)
+    assert np.array_equal(disparity.distances, depthplanes.detect(depth, unit="disparity", baseline=0.1, camera=camera).distances)
+    assert depthplanes.detect(frame, camera=(58, 58, 63, 23.5)).notes, "an odd camera is told of"
+
+
+def test_what_a_frame_and_a_detector_both_state_has_to_agree(room):
+    assert len(depthplanes.detect(room, unit="mm", camera=room.camera)) == len(depthplanes.detect(room))
+    with pytest.raises(depthplanes.InputError, match=r'unit is "tum" \(0.0002 m\) by the detector, and "scene" \(0.001 m\) by the frame'):
+        depthplanes.detect(room, unit="tum")
+    with pytest.raises(depthplanes.InputError, match=r"camera is \(500, 500, 320, 240\) by the detector, and \(580, 580, 319.5, 239.5\) by"):
+        depthplanes.detect(room, camera=(500, 500, 320, 240))
+    with pytest.raises(depthplanes.InputError, match=r"ray_distance is True.*depthplanes.read\(.., ray_distance=True\)"):
+        depthplanes.detect(room, ray_distance=True)
     assert len(depthplanes.detect(room, min_pixels=5000)) < 20
 
 
@@ -168,3 +236,15 @@ except ImportError as error:
 """
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert f"pip install {package}" in ran.stdout and call in ran.stdout, ran.stdout
+
+
+def test_a_package_that_lacks_a_library_says_which(planes, monkeypatch):
+    import importlib
+
+    def lacking(name):
+        raise ImportError("libX11.so.6: cannot open shared object file")
+
+    monkeypatch.setattr(importlib, "import_module", lacking)
+    with pytest.raises(depthplanes.MissingPackageError, match="`open3d`, which is installed, but cannot be imported: libX11.so.6") as raised:
+        planes.to_open3d()
+    assert "pip install" not in str(raised.value)

@@ -71,9 +71,21 @@ def test_open3d(some, tell):
 def test_matplotlib(some, tmp_path):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    pyplot.close("all")
     axes = some.plot()
-    assert len(axes.images) == 1 and any(text.get_text().startswith("1\n1.55 m") for text in axes.texts)
+    legend = axes.get_legend()
+    assert "perpendicular" in legend.get_title().get_text() and legend.get_texts()[0].get_text() == "1:  1.55 m"
     axes.figure.savefig(tmp_path / "plot.png")
+    assert len(axes.images) == 1 and axes.texts[0].get_text() == "1"
+    picture = axes.images[0].get_window_extent()
+    assert picture.width > 0.75 * axes.figure.bbox.width, "the picture fills the figure but for the legend"
+    places = np.array([text.get_position() for text in axes.texts])
+    apart = np.hypot(*(places[:, None] - places).transpose(2, 0, 1))
+    assert len(places) > 5 and apart[~np.eye(len(places), dtype=bool)].min() > 20, "no number lies on another"
+    own = pyplot.figure().gca()
+    assert some.plot(own) is own is some.plot()
+    pyplot.close("all")
 
 
 @pytest.mark.filterwarnings("ignore")

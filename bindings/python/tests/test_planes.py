@@ -74,6 +74,7 @@ def test_a_selection_is_planes_again(planes, index):
     some = planes[index]
     assert isinstance(some, depthplanes.Planes) and len(some) == len(places)
     assert np.array_equal(some.areas, planes.areas[index], equal_nan=True)
+    assert some.indices.tolist() == places.tolist() and some[:1].indices.tolist() == places[:1].tolist()
     assert np.array_equal(some.normals, planes.normals[index])
     for k, place in enumerate(places):
         assert np.array_equal(some.mask(k), planes.mask(place))
@@ -90,6 +91,11 @@ def test_one_plane_is_its_row(planes):
     assert isinstance(plane, depthplanes.Plane) and plane.label == 5
     assert plane.area == planes.areas[4] and plane.pixel_count == planes.pixel_counts[4]
     assert np.array_equal(plane.mask, planes.mask(4)) and np.array_equal(plane.model, planes.plane_model(4))
+    assert np.array_equal(plane.points, planes.points(4)) and np.array_equal(plane.hull(), planes.hull(4))
+    rings = [ring for of in (plane, planes[[4]][0]) for part in of.polygons(metric=True, tolerance=1) for ring in (part.outer, *part.holes)]
+    theirs = [ring for part in planes.polygons(4, metric=True, tolerance=1) for ring in (part.outer, *part.holes)] * 2
+    assert len(rings) == len(theirs) and all(np.array_equal(ring, other) for ring, other in zip(rings, theirs, strict=True))
+    assert np.array_equal(plane.rectangle(metric=True).sides, planes.rectangle(4, metric=True).sides)
     assert planes[-1].label == len(planes) and "Plane(label=5" in repr(plane)
     for wrong in (len(planes), -len(planes) - 1):
         with pytest.raises(IndexError):
@@ -140,8 +146,10 @@ def test_pictures(planes, room):
     over = planes[:1].draw(photo)
     assert (over[~planes.mask(0)] == 255).all() and (over[planes.mask(0)] != 255).any(axis=1).all()
     assert (photo == 255).all(), "the picture is not drawn into"
+    assert np.array_equal(planes[:1].draw(photo[..., 0]), over), "grey is the same as three equal channels"
+    assert np.array_equal(planes[:1].draw(np.asfortranarray(photo)), over)
     for wrong in (photo[:100], photo[..., :2]):
-        with pytest.raises(depthplanes.InputError):
+        with pytest.raises(depthplanes.InputError, match=r"image is an array of uint8, shape .*accepted: .*\(480, 640, 3\)"):
             planes.draw(wrong)
 
 
@@ -162,7 +170,7 @@ def test_an_explanation_names_what_helps(room):
     why = planes.explain(int(columns[0]), int(rows[0]))
     assert why.verdict != "plane" and str(why).startswith("No plane here")
     assert planes.explain(320, 400).verdict == "plane"
-    with pytest.raises(depthplanes.InputError, match="columns 0 to 639"):
+    with pytest.raises(depthplanes.InputError, match="u is 640; accepted: a whole number from 0 to 639"):
         planes.explain(640, 0)
 
 
@@ -180,6 +188,27 @@ def test_a_video_keeps_its_ids_and_a_pose_helps():
     assert {plane.id for plane in seen} == set(tracks.ids.tolist())
     oldest = max(seen, key=lambda plane: plane.age)
     assert oldest.age == 4 and oldest.state == "tracked" and oldest.normal.shape == (3,)
+
+
+def test_a_pose_is_a_matrix_of_4_x_4_as_well():
+    frames = list(depthplanes.video("scene:boxes:sensor=kinect,size=320x240,frames=3"))
+    answers = []
+    for of in (lambda pose: pose, lambda pose: (pose.rotation.tolist(), list(pose.translation)), lambda pose: matrix(pose), lambda pose: matrix(pose).tolist()):
+        tracker = depthplanes.Tracker()
+        for frame in frames:
+            tracks = tracker(depthplanes.detect(frame), pose=of(frame.pose))
+        answers.append([(plane.id, plane.age, plane.distance) for plane in tracks.planes])
+    assert all(answer == answers[0] for answer in answers)
+    all_of = depthplanes.detect(frames[0])
+    assert len(depthplanes.Tracker()(all_of[all_of.pixel_counts > 0]).ids) == len(all_of), "all of them are no selection"
+    with pytest.raises(depthplanes.InputError, match=r"selection of 2 planes.*tracks.ids\[selection.indices\]"):
+        depthplanes.Tracker()(all_of[:2])
+
+
+def matrix(pose):
+    whole = np.eye(4)
+    whole[:3, :3], whole[:3, 3] = pose
+    return whole
 
 
 def test_the_ground_of_a_frame(planes):

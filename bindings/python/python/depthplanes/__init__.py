@@ -17,13 +17,24 @@ the camera. Pixels are column u and row v from 0.
 """
 
 from ._detector import Detector, detect
-from ._errors import Error, FileError, InputError, InputTypeError, MissingFileError, MissingPackageError, ReadingWarning
+from ._errors import (
+    Error,
+    FileError,
+    InputError,
+    InputIndexError,
+    InputTypeError,
+    MissingFileError,
+    MissingPackageError,
+    OutOfMemoryError,
+    ReadingWarning,
+)
 from ._explanation import Explanation
 from ._frame import Frame, Pose, read, scene, video
 from ._ground import Ground, floor
 from ._measures import noise, score
 from ._native import __version__
-from ._planes import Plane, Planes, Polygon, Rectangle, write
+from ._plane import Plane, Polygon, Rectangle
+from ._planes import Planes, write
 from ._tables import tables
 from ._tracker import TrackedPlane, Tracker, Tracks
 
@@ -35,9 +46,11 @@ __all__ = [
     "Frame",
     "Ground",
     "InputError",
+    "InputIndexError",
     "InputTypeError",
     "MissingFileError",
     "MissingPackageError",
+    "OutOfMemoryError",
     "Plane",
     "Planes",
     "Polygon",

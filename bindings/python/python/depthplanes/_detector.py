@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import os
 import warnings
 from typing import TYPE_CHECKING, Any
@@ -9,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _native
-from ._errors import InputError, InputTypeError, ReadingWarning
+from . import _accept, _native
+from ._errors import InputTypeError, ReadingWarning
 from ._frame import Frame
-from ._options import Camera, DetectorOptions, Path, reading_of, split
+from ._options import PARAMETERS, Camera, DetectorOptions, Path, camera_of, reading_of, searching_of
 from ._planes import Planes
 
 if TYPE_CHECKING:
@@ -74,11 +75,10 @@ class Detector:
         method: str = "planar",
         **options: Unpack[DetectorOptions],
     ) -> None:
-        stated, parameters = split(options)
-        threads, curved = parameters.pop("threads", 1), parameters.pop("curved", False)
-        merge_coplanar = parameters.pop("merge_coplanar", None)
-        self._reading = reading_of(sensor, camera, unit, stated)
-        self._native = _native.Detector(self._reading, method, parameters, threads, curved, merge_coplanar)
+        searching = searching_of(method, options)
+        self._native = _native.Detector(reading_of(sensor, camera, unit, options), method, *searching)
+        given = {"sensor": sensor, "camera": camera_of(camera), "unit": unit, "method": method, **copy.deepcopy(options)}
+        self._given = {name: value for name, value in given.items() if value is not None}
 
     def __call__(self, depth: npt.ArrayLike | Frame | Path) -> Planes:
         """Finds the planes of one map.
@@ -89,7 +89,7 @@ class Detector:
             The map: an array of NumPy, or anything that becomes one without a copy (``__array__``, DLPack), such as a
             tensor of PyTorch or a DataArray of xarray. Pixels of type uint8, uint16 and float32 are read where they lie,
             also in a crop of a larger array; they must not be written to meanwhile. Other types are converted. A `Frame`
-            that was read without a word about it, or the path of a file.
+            knows what was stated when it was read; of what it does not know this detector's words hold. Or the path of a file.
 
         Returns
         -------
@@ -99,7 +99,7 @@ class Detector:
         Raises
         ------
         InputError, InputTypeError, FileError
-            For what is no map.
+            For what is no map, and for a `Frame` that contradicts what is stated here.
 
         Warns
         -----
@@ -117,23 +117,28 @@ class Detector:
         if isinstance(depth, (str, os.PathLike)):
             return Planes(self._native.detect_file(os.fspath(depth))), True
         if isinstance(depth, Frame):
-            if not self._reading.is_empty():
-                raise InputError(
-                    "the frame was read already, and knows its sensor, camera and unit; accepted: a Detector without these "
-                    "for frames, or the array (frame.depth) or the path of the file for this one"
-                )
             return Planes(self._native.detect_frame(depth._native)), True
         found, is_first = self._native.detect(as_array(depth))
         return Planes(found), is_first
 
     def __repr__(self) -> str:
-        parameters = "".join(f", {name}={value:g}" for name, value in self.parameters.items())
-        return f"Detector(method={self._native.parameters()[0]!r}{parameters})"
+        given = {"method": self._native.parameters()[0], **self._given}
+        stated = [f"{name}={_accept.shown(value)}" for name, value in given.items() if name not in PARAMETERS]
+        parameters = [f"{name}={value:g}" for name, value in self.parameters.items()]
+        return f"Detector({', '.join(stated + parameters)})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Other processes make it anew of the same words."""
+        return _made_of, (self._given,)
 
     @property
     def parameters(self) -> dict[str, float]:
         """The value of each parameter of the method."""
         return {name.replace("-", "_"): value for name, value in self._native.parameters()[1]}
+
+
+def _made_of(given: dict[str, Any]) -> Detector:
+    return Detector(**given)
 
 
 def detect(
@@ -169,6 +174,10 @@ def detect(
     return _warned(planes)
 
 
+#: What is a map.
+MAPS = "an array of numbers of shape (height, width), a Frame, or the path of a file"
+
+
 def as_array(depth: Any) -> npt.NDArray[Any]:
     """The map as an array of NumPy, without a copy where that can be; pixels that are masked are 0."""
     if isinstance(depth, np.ma.MaskedArray):
@@ -176,11 +185,14 @@ def as_array(depth: Any) -> npt.NDArray[Any]:
         return filled
     if isinstance(depth, np.ndarray):
         return depth
-    if not hasattr(depth, "__array__") and hasattr(depth, "__dlpack__"):
-        return np.from_dlpack(depth)
-    array = np.asarray(depth)
-    if array.dtype == np.object_:
-        raise InputTypeError(f"the map is a {type(depth).__name__}; accepted: an array of shape (height, width)")
+    try:
+        if not hasattr(depth, "__array__") and hasattr(depth, "__dlpack__"):
+            return np.from_dlpack(depth)
+        array = np.asarray(depth)
+    except Exception as error:  # of whatever package the map is of: a tensor of a GPU, rows of several lengths
+        raise InputTypeError(f"depth is a {type(depth).__name__} that is no array of NumPy ({error}); accepted: {MAPS}") from error
+    if array.dtype.kind not in "buifc":
+        raise _accept.wrong_type("depth", depth, MAPS)
     return array
 
 

@@ -1,4 +1,4 @@
-"""What can go wrong, by whose fault it is. Texts are those of the program: what was given, what is accepted, what to do."""
+"""What can go wrong, by whose fault it is. Texts say what was given, what is accepted, what to do."""
 
 from __future__ import annotations
 
@@ -9,6 +9,10 @@ class Error(Exception):
 
 class InputError(Error, ValueError):
     """A value that is not accepted: a parameter, a unit, a camera, the content of a file."""
+
+
+class InputIndexError(InputError, IndexError):
+    """A plane that is not there."""
 
 
 class InputTypeError(Error, TypeError):
@@ -23,8 +27,12 @@ class MissingFileError(FileError, FileNotFoundError):
     """A file or a folder that is not there."""
 
 
+class OutOfMemoryError(Error, MemoryError):
+    """Memory that cannot be had; the text says how much is needed."""
+
+
 class MissingPackageError(Error, ImportError):
-    """A package that a conversion needs and that is not installed; the text says what to type."""
+    """A package that a conversion needs and that cannot be imported; the text says why, or what to type."""
 
 
 class ReadingWarning(UserWarning):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from ._words import in_python
+
 
 class Explanation:
     """Why a pixel has a plane or none: what each stage of the method saw there, and what to change."""
@@ -19,7 +21,7 @@ class Explanation:
     @property
     def text(self) -> str:
         """The verdict as a sentence."""
-        return str(self._record["verdict"]["text"])
+        return in_python(str(self._record["verdict"]["text"]))
 
     @property
     def findings(self) -> list[dict[str, Any]]:

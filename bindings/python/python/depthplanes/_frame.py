@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _native
-from ._errors import InputError
-from ._options import Camera, FileOptions, Path, reading_of
+from . import _accept, _native
+from ._errors import InputError, InputTypeError
+from ._options import Camera, FileOptions, Path, reading_of_file
+from ._words import in_python
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -28,7 +28,7 @@ class Pose(NamedTuple):
 
 
 class Frame:
-    """A map with all that is known of it. A `Detector` without words of its own takes it as it is."""
+    """A map with all that is known of it. What a `Detector` states as well holds where the frame says nothing."""
 
     def __init__(self, native: _native.Frame) -> None:
         self._native = native
@@ -76,8 +76,8 @@ class Frame:
 
     @property
     def notes(self) -> list[str]:
-        """What is odd about the map, as the program says it."""
-        return self._native.warnings
+        """What is odd about the map."""
+        return [in_python(note) for note in self._native.warnings]
 
     @property
     def time(self) -> float | None:
@@ -100,13 +100,21 @@ class Frame:
         """The label image of what is really there, (height, width); of scenes alone."""
         return self._native.truth()
 
+    def __reduce__(self) -> Any:
+        """Refuses to be pickled."""
+        raise InputTypeError("a frame cannot be pickled, since its map is in the library's memory; accepted: frame.depth, or the path")
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Frame:
+        """The same frame, which never changes."""
+        return self
+
     def __repr__(self) -> str:
         width, height = self._native.size
         return f"<Frame {self.source!r}: {width} x {height}, {self.unit}>"
 
 
 def read(
-    path: Path | bytes,
+    path: Path | bytes | IO[bytes],
     *,
     sensor: str | None = None,
     camera: Camera | None = None,
@@ -121,10 +129,10 @@ def read(
 
     Parameters
     ----------
-    path : path or bytes
-        The file, or what is in it.
+    path : path, bytes or file object
+        The file, or what is in it; a file that is open (``open(path, "rb")``, ``io.BytesIO``) is read from where it is.
     name : str, optional
-        What bytes are called, in `Frame.source` and in messages; ``"bytes"`` unless it is stated.
+        What bytes are called, in `Frame.source` and in messages; ``"bytes"`` unless it is stated, or the name of the open file.
     sensor, camera, unit, **options
         What is stated of it, as for `Detector`; of files also `member` (which of several maps: the array's name in NPZ, its
         index in NPY, the page of TIFF), `raw_size` (width, height) and `raw_type` (such as ``"uint16"``) of files without a
@@ -141,12 +149,23 @@ def read(
     InputError
         For one that is no map; the text says what it is.
     """
-    reading = reading_of(sensor, camera, unit, options)
-    if isinstance(path, bytes):
-        return Frame(_native.Frame.decode(path, "bytes" if name is None else name, reading))
+    reading = reading_of_file(sensor, camera, unit, options)
+    if isinstance(path, (bytes, bytearray, memoryview)) or hasattr(path, "read"):
+        content, known_as = _bytes_of(path)
+        return Frame(_native.Frame.decode(content, known_as if name is None else _accept.text("name", name), reading))
     if name is not None:
         raise InputError(f"name={name!r} is for bytes; the frame of a file is called by its path, which is given")
-    return Frame(_native.Frame.read(os.fspath(path), reading))
+    return Frame(_native.Frame.read(_accept.path("path", path), reading))
+
+
+def _bytes_of(file: Any) -> tuple[bytes, str]:
+    """What is in a file object or in memory, and what it is called."""
+    if not hasattr(file, "read"):
+        return bytes(file), "bytes"
+    content, name = file.read(), getattr(file, "name", None)
+    if not isinstance(content, bytes):
+        raise _accept.wrong_type("path", file, 'a file that gives bytes: open(path, "rb")')
+    return content, name if isinstance(name, str) else "bytes"
 
 
 def scene(spec: str = "room") -> Frame:
@@ -164,7 +183,7 @@ def scene(spec: str = "room") -> Frame:
     >>> frame.depth.shape, int(frame.truth.max()) > 5
     ((240, 320), True)
     """
-    return Frame(_native.Frame.scene(spec))
+    return Frame(_native.Frame.scene(_accept.text("spec", spec)))
 
 
 def video(
@@ -194,5 +213,5 @@ def video(
     [1 2 3]
     [1 2 3]
     """
-    native = _native.Video(os.fspath(source), reading_of(sensor, camera, unit, options))
+    native = _native.Video(_accept.path("source", source), reading_of_file(sensor, camera, unit, options))
     return (Frame(frame) for frame in iter(native.next, None))

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _native
-from ._detector import Detector
+from . import _accept, _native
+from ._detector import detect
+from ._errors import InputTypeError
 from ._frame import Frame
 from ._options import Camera, DetectorOptions, Path
 from ._planes import Planes
@@ -97,13 +98,17 @@ class Ground:
         origin : array, (2,)
             x and y of the corner of the first cell, metres from the point of the floor below the camera.
         """
-        cells, origin = self._native.grid(resolution)
+        cells, origin = self._native.grid(_accept.number("resolution", resolution))
         return cells, np.array(origin)
 
     @cached_property
     def _record(self) -> dict[str, Any]:
         record: dict[str, Any] = json.loads(self._native.record(self.planes._found.source))
         return record
+
+    def __reduce__(self) -> Any:
+        """Refuses to be pickled."""
+        raise InputTypeError("a ground cannot be pickled, since its map is in the library's memory; accepted: ground.to_dict(), its arrays")
 
     def __repr__(self) -> str:
         if self.floor is None:
@@ -146,6 +151,11 @@ def floor(
     >>> round(ground.height, 1), ground.classes[ground.floor["label"] - 1]
     (1.4, 'floor')
     """
-    planes = depth if isinstance(depth, Planes) else Detector(sensor, camera, unit, method, **options)(depth)
-    finder = _native.GroundFinder(None if up is None else tuple(up), camera_height)
+    direction = None if up is None else _accept.numbers("up", up, (3,), "(x, y, z), camera coordinates").tolist()
+    height = None if camera_height is None else _accept.number("camera_height", camera_height)
+    finder = _native.GroundFinder(direction, height)
+    if isinstance(depth, Planes):
+        planes = depth
+    else:
+        planes = detect(depth, sensor=sensor, camera=camera, unit=unit, method=method, **options)
     return Ground(finder.find(planes._found), planes)

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _native
-from ._errors import InputError
+from . import _accept, _native
 from ._frame import Frame
 
 
@@ -40,9 +39,9 @@ def score(
     >>> scores["segcomp"]["correct"], scores["planes"]["truth"]  # found whole, of all down to the smallest
     (41, 70)
     """
-    scores: dict[str, dict[str, float | None]] = json.loads(
-        _native.score(_labels(truth, "truth"), _labels(prediction, "prediction"), tolerance, truth_from)
-    )
+    images = _labels("truth", truth), _labels("prediction", prediction)
+    tolerance, truth_from = _accept.number("tolerance", tolerance), _accept.whole("truth_from", truth_from, least=0, most=65535)
+    scores: dict[str, dict[str, float | None]] = json.loads(_native.score(*images, tolerance, truth_from))
     return scores
 
 
@@ -71,19 +70,31 @@ def noise(frames: Frame | Iterable[Frame]) -> dict[str, Any]:
     >>> 0.5 < 1000 * estimate["depth"][1]["sigma_m"] < 10  # millimetres at 2 m
     True
     """
-    several = [frames] if isinstance(frames, Frame) else list(frames)
+    try:
+        several = [frames] if isinstance(frames, Frame) else list(frames)
+    except TypeError:
+        raise _accept.wrong_type("frames", frames, FRAMES) from None
+    for frame in several:
+        if not isinstance(frame, Frame):
+            raise _accept.wrong_type("frames", frame, FRAMES)
     estimate: dict[str, Any] = json.loads(_native.noise([frame._native for frame in several]))
     return estimate
 
 
-def _labels(labels: npt.ArrayLike, name: str) -> npt.NDArray[np.uint16]:
-    array = np.asarray(labels)
+#: What noise is estimated from.
+FRAMES = "a Frame of depthplanes.read, or several"
+
+
+def _labels(name: str, labels: npt.ArrayLike) -> npt.NDArray[np.uint16]:
+    accepted = "a label image of two dimensions with whole numbers from 0 (no plane) to 65535"
+    try:
+        array = np.asarray(labels)
+    except ValueError:
+        raise _accept.wrong_type(name, labels, accepted) from None
     if array.dtype == np.uint16 and array.ndim == 2:
         return array
-    is_whole = np.issubdtype(array.dtype, np.integer) or array.dtype == np.bool_
-    if array.ndim != 2 or not is_whole or array.size == 0 or array.min() < 0 or array.max() > np.iinfo(np.uint16).max:
-        raise InputError(
-            f"the {name} is an array of {array.dtype}, shape {array.shape}; accepted: a label image of two dimensions with whole "
-            "numbers from 0 (no plane) to 65535"
-        )
+    if array.ndim != 2 or array.dtype.kind not in "bui":
+        raise _accept.wrong_type(name, array if array.ndim else labels, accepted)
+    if array.size == 0 or array.min() < 0 or array.max() > np.iinfo(np.uint16).max:
+        raise _accept.wrong_value(name, array, accepted)
     return array.astype(np.uint16)

@@ -58,7 +58,6 @@ class Reading:
         raw_size: tuple[int, int] | None = None,
         raw_type: str | None = None,
     ) -> Reading: ...
-    def is_empty(self) -> bool: ...
 
 @final
 class Detector:

@@ -3,144 +3,22 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, overload
+from typing import Any, overload
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _native
-from ._errors import InputError
+from . import _accept, _native
+from ._errors import InputError, InputIndexError, InputTypeError
 from ._explanation import Explanation
-from ._options import Path
-
-if TYPE_CHECKING:
-    import matplotlib.axes
-    import open3d
-    import pandas
-    import supervision
-
-Floats = npt.NDArray[np.float64]
-
-#: Furthest that outlines lie from the borders of pixels unless it is stated, pixels.
-TOLERANCE = 1.5
+from ._forms import Forms
+from ._plane import TOLERANCE, Floats, Plane, Polygon, Rectangle
+from ._words import in_python
 
 
-class Polygon(NamedTuple):
-    """A part of a plane: rings of corners, the last joined to the first, of shape (corners, 2) in pixels or (corners, 3) in metres."""
-
-    outer: Floats
-    """The ring around it, counter-clockwise seen from the camera."""
-    holes: list[Floats]
-    """The rings of its holes, clockwise."""
-
-
-class Rectangle(NamedTuple):
-    """A rectangle on the picture, in pixels, or on the plane, in metres."""
-
-    centre: Floats
-    """Its middle, (2,) or (3,)."""
-    axes: Floats
-    """Unit vectors along its sides, that of the longer side first, (2, 2) or (2, 3)."""
-    sides: Floats
-    """The lengths of its sides, the longer first, (2,)."""
-
-    @property
-    def corners(self) -> Floats:
-        """Its corners, (4, 2) or (4, 3)."""
-        along, across = self.axes * self.sides[:, None] / 2
-        signs = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-        corners: Floats = self.centre + signs @ np.stack([along, across])
-        return corners
-
-
-class Plane:
-    """One plane of a `Planes`: its row of each table."""
-
-    __slots__ = ("_index", "_planes")
-
-    def __init__(self, planes: Planes, index: int) -> None:
-        self._planes = planes
-        self._index = index
-
-    @property
-    def label(self) -> int:
-        """Its value in `Planes.labels`, from 1."""
-        return self._index + 1
-
-    @property
-    def normal(self) -> Floats:
-        """Unit normal towards the camera, camera coordinates, (3,); NaN without unit and camera."""
-        row: Floats = self._planes.normals[self._index]
-        return row
-
-    @property
-    def distance(self) -> float:
-        """Distance of the camera from the plane, perpendicular to it, metres; NaN without unit and camera."""
-        return float(self._planes.distances[self._index])
-
-    @property
-    def area(self) -> float:
-        """Area of what is seen of it, square metres; NaN if it is not known."""
-        return float(self._planes.areas[self._index])
-
-    @property
-    def rms(self) -> float:
-        """Root mean square distance of the points from the plane, metres; NaN if it is not known."""
-        return float(self._planes.rms[self._index])
-
-    @property
-    def centroid(self) -> Floats:
-        """Mean of its points, metres in camera coordinates, (3,); NaN if it is not known."""
-        row: Floats = self._planes.centroids[self._index]
-        return row
-
-    @property
-    def centroid_px(self) -> Floats:
-        """Mean of its pixels (u, v), (2,)."""
-        row: Floats = self._planes.centroids_px[self._index]
-        return row
-
-    @property
-    def covariance(self) -> Floats:
-        """Covariance of (nx, ny, nz, distance), (4, 4); NaN if it is not known."""
-        row: Floats = self._planes.covariances[self._index]
-        return row
-
-    @property
-    def pixel_count(self) -> int:
-        """How many pixels it has."""
-        return int(self._planes.pixel_counts[self._index])
-
-    @property
-    def xyxy(self) -> npt.NDArray[np.int64]:
-        """Its box of pixels, (4,), as in `Planes.xyxy`."""
-        box: npt.NDArray[np.int64] = self._planes.xyxy[self._index]
-        return box
-
-    @property
-    def mask(self) -> npt.NDArray[np.bool_]:
-        """Its pixels, (height, width)."""
-        return self._planes.mask(self._index)
-
-    @property
-    def points(self) -> Floats:
-        """Its points, as of `Planes.points`."""
-        return self._planes.points(self._index)
-
-    @property
-    def model(self) -> Floats:
-        """(a, b, c, d), as of `Planes.plane_model`."""
-        return self._planes.plane_model(self._index)
-
-    def __repr__(self) -> str:
-        where = "" if np.isnan(self.distance) else f", {self.distance:.3f} m, normal {self.normal.round(3)}"
-        return f"Plane(label={self.label}, {self.pixel_count} pixels{where})"
-
-
-class Planes:
+class Planes(Forms):
     """The planes of one map, the largest first, as arrays with a row for each plane.
 
     `planes[k]` is one `Plane`, and so is each element of a loop. `planes[planes.areas > 1]`, `planes[:3]` and
@@ -161,8 +39,9 @@ class Planes:
     [71407, 43723, 23531]
     """
 
-    def __init__(self, found: _native.Found) -> None:
+    def __init__(self, found: _native.Found, places: tuple[int, ...] | None = None) -> None:
         self._found = found
+        self._places = places
 
     def __len__(self) -> int:
         return len(self._found)
@@ -174,19 +53,41 @@ class Planes:
     def __getitem__(self, index: slice | list[int] | npt.NDArray[Any]) -> Planes: ...
 
     def __getitem__(self, index: int | slice | list[int] | npt.NDArray[Any]) -> Plane | Planes:
-        chosen = np.arange(len(self))[index]
+        try:
+            chosen = np.arange(len(self))[index]
+        except IndexError as error:
+            raise InputIndexError(f"index is {_accept.shown(index)}: {error}; accepted: {self._accepted}") from None
         if np.ndim(chosen) == 0:
             return Plane(self, int(chosen))
-        return Planes(self._found.select(chosen.tolist()))
+        if np.ndim(chosen) != 1:
+            raise InputIndexError(f"index is {_accept.shown(index)}; accepted: {self._accepted}")
+        is_all = self._places is None and chosen.tolist() == list(range(len(self)))
+        return Planes(self._found.select(chosen.tolist()), None if is_all else tuple(self.indices[chosen].tolist()))
 
     def __iter__(self) -> Iterator[Plane]:
         return (Plane(self, index) for index in range(len(self)))
+
+    def __reduce__(self) -> Any:
+        """Refuses to be pickled."""
+        raise InputTypeError(
+            "planes cannot be pickled, since they hold the map in the library's memory; accepted: planes.to_dict(), arrays of planes such as "
+            "planes.labels, and the Detector"
+        )
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Planes:
+        """The same planes, which never change, with arrays of their own."""
+        return Planes(self._found, self._places)
 
     def __repr__(self) -> str:
         width, height = self._found.size
         return f"<Planes: {len(self)} on {100 * np.count_nonzero(self.labels) / (width * height):.1f} % of {width} x {height} pixels>"
 
     # What was found, with a row for each plane.
+
+    @cached_property
+    def indices(self) -> npt.NDArray[np.int64]:
+        """The place of each plane in the whole result, (N,): 0, 1, .. unless this is a selection."""
+        return np.arange(len(self)) if self._places is None else np.array(self._places, dtype=np.int64)
 
     @cached_property
     def labels(self) -> npt.NDArray[np.uint16]:
@@ -257,8 +158,8 @@ class Planes:
 
     @cached_property
     def notes(self) -> list[str]:
-        """What a person should know of how the map was read and of what was found, as the program says it."""
-        return self._found.notes()
+        """What a person should know of how the map was read and of what was found."""
+        return [in_python(note) for note in self._found.notes()]
 
     @property
     def camera(self) -> tuple[float, float, float, float] | None:
@@ -290,10 +191,10 @@ class Planes:
         InputError
             Without unit and camera, and if the array was written to since.
         """
-        rays = self._rays
-        u0, v0, u1, v1 = self.xyxy[k]
+        label, rays = self._label(k), self._rays
+        u0, v0, u1, v1 = self.xyxy[label - 1]
         part = np.s_[v0:v1, u0:u1]
-        inside = self.labels[part] == self._label(k)
+        inside = self.labels[part] == label
         depth = self._depth_m[part][inside].astype(np.float64)
         return np.column_stack([rays[part][inside] * depth[:, None], depth])
 
@@ -303,7 +204,8 @@ class Planes:
         (a, b, c) is the unit normal towards the camera, so that d is the distance of the camera, from 0 up. Open3D's
         ``segment_plane`` gives the same four numbers with either sign.
         """
-        return np.append(self.normals[k], self.distances[k])
+        place = self._label(k) - 1
+        return np.append(self.normals[place], self.distances[place])
 
     def polygons(self, k: int, *, metric: bool = False, tolerance: float = TOLERANCE, min_hole: int = 0) -> list[Polygon]:
         """The outlines of plane k: one polygon with its holes for each of its connected groups of pixels.
@@ -324,17 +226,20 @@ class Planes:
         list of Polygon
             Centres of pixels are at whole numbers, so that the corners of pixel (0, 0) are at -0.5 and 0.5.
         """
-        found = self._outlines(tolerance, min_hole).polygons(self._label(k), metric)
+        metric, label = _accept.flag("metric", metric), self._label(k)
+        found = self._outlines(tolerance, min_hole).polygons(label, metric)
         return [Polygon(outer, holes) for outer, holes in _metric(found, metric)]
 
     def hull(self, k: int, *, metric: bool = False) -> Floats:
         """The convex hull of plane k, (corners, 2) in pixels or (corners, 3) in metres."""
-        hull: Floats = _metric(self._outlines(TOLERANCE, 0).hull(self._label(k), metric), metric)
+        metric, label = _accept.flag("metric", metric), self._label(k)
+        hull: Floats = _metric(self._outlines(TOLERANCE, 0).hull(label, metric), metric)
         return hull
 
     def rectangle(self, k: int, *, metric: bool = False) -> Rectangle:
         """The rectangle of least area around plane k, on the picture in pixels or on the plane in metres."""
-        centre, axes, sides = _metric(self._outlines(TOLERANCE, 0).rectangle(self._label(k), metric), metric)
+        metric, label = _accept.flag("metric", metric), self._label(k)
+        centre, axes, sides = _metric(self._outlines(TOLERANCE, 0).rectangle(label, metric), metric)
         return Rectangle(np.array(centre), np.array(axes), np.array(sides))
 
     def explain(self, u: int, v: int) -> Explanation:
@@ -346,136 +251,9 @@ class Planes:
         >>> planes.explain(320, 400).verdict
         'plane'
         """
+        width, height = self.size
+        u, v = _accept.whole("u", u, least=0, most=width - 1), _accept.whole("v", v, least=0, most=height - 1)
         return Explanation(json.loads(self._found.explain(u, v)))
-
-    # Pictures.
-
-    def draw(self, image: npt.NDArray[np.uint8] | None = None) -> npt.NDArray[np.uint8]:
-        """The map in grey, or a picture of yours, with each plane in its colour, (height, width, 3), sRGB.
-
-        Parameters
-        ----------
-        image : array of shape (height, width, 3), uint8, optional
-            A picture that the camera took at the same time, registered to the map.
-        """
-        return self._found.overlay(None if image is None else np.ascontiguousarray(image))
-
-    def plot(self, ax: matplotlib.axes.Axes | None = None) -> matplotlib.axes.Axes:
-        """Draws the planes with their labels into a plot of Matplotlib, and returns its axes."""
-        from ._export.plot import plot
-
-        return plot(self, ax)
-
-    # Other forms.
-
-    def to_dict(self, *, source: str | None = None, outlines: float | None = None) -> dict[str, Any]:
-        """The record of the map and its planes, as the program writes it (``--planes FILE.json``, docs/planes-schema.md).
-
-        Parameters
-        ----------
-        source : str, optional
-            What the map is called.
-        outlines : float, optional
-            With outlines within this tolerance, pixels.
-        """
-        record: dict[str, Any] = json.loads(self._encode("planes", "json", source, outlines))
-        return record
-
-    def to_coco(self, *, source: str | None = None) -> dict[str, Any]:
-        """The planes as annotations of COCO, as the program writes them (``--planes FILE.coco.json``): masks by run lengths."""
-        coco: dict[str, Any] = json.loads(self._encode("planes", "coco.json", source))
-        return coco
-
-    def to_geojson(self, *, source: str | None = None, outlines: float = TOLERANCE) -> dict[str, Any]:
-        """The outlines as GeoJSON in pixels, as the program writes them (``--planes FILE.geojson``)."""
-        collection: dict[str, Any] = json.loads(self._encode("planes", "geojson", source, outlines))
-        return collection
-
-    def to_dataframe(self) -> pandas.DataFrame:
-        """A row for each plane, with the columns of the program's table (``--planes FILE.csv``). Needs pandas."""
-        from ._export.dataframe import to_dataframe
-
-        return to_dataframe(self)
-
-    def to_open3d(self) -> list[open3d.geometry.PointCloud]:
-        """The points of each plane as a point cloud of Open3D in the plane's colour, with its normal. Needs open3d."""
-        from ._export.open3d import to_open3d
-
-        return to_open3d(self)
-
-    def to_supervision(self) -> supervision.Detections:
-        """The planes as detections of supervision: boxes, masks, and the other arrays as `data`. Needs supervision."""
-        from ._export.supervision import to_supervision
-
-        return to_supervision(self)
-
-    def to_rerun(self, path: str = "planes", recording: Any = None) -> None:
-        """Logs camera, depth, labels and outlines to Rerun below an entity path. Needs rerun-sdk."""
-        from ._export.rerun import to_rerun
-
-        to_rerun(self, path, recording)
-
-    def to_ros(self, frame_id: str = "camera", stamp: tuple[int, int] = (0, 0), types: Any = None) -> dict[str, Any]:
-        """The labels and planes as messages of ROS 2: ``labels``, a sensor_msgs/Image, and ``planes``, a list of shape_msgs/Plane.
-
-        Parameters
-        ----------
-        frame_id : str, optional
-            The frame of coordinates of the camera (optical: x right, y down, z forward).
-        stamp : (int, int), optional
-            Seconds and nanoseconds.
-        types : typestore of rosbags, optional
-            Where messages are taken from. Without it they are those of the ROS that is installed, or else of rosbags.
-        """
-        from ._export.ros import to_ros
-
-        return to_ros(self, frame_id, stamp, types)
-
-    def write(
-        self,
-        *,
-        labels: Path | None = None,
-        overlay: Path | None = None,
-        planes: Path | None = None,
-        cloud: Path | None = None,
-        mesh: Path | None = None,
-        curved: Path | None = None,
-        outlines: float | None = None,
-        legend: bool = False,
-        source: str | None = None,
-    ) -> None:
-        """Writes files as the program does: all of them, or none. The endings of names choose the form.
-
-        Parameters
-        ----------
-        labels : path, optional
-            Label image, ``.png`` (16 bits) or ``.npy``.
-        overlay : path, optional
-            Picture, ``.png``.
-        planes : path, optional
-            Planes, ``.json``, ``.csv``, ``.geojson`` or ``.coco.json``.
-        cloud, mesh : path, optional
-            Point cloud, and mesh of the planes, ``.ply``.
-        curved : path, optional
-            Label image of curved surfaces.
-        outlines : float, optional
-            With outlines within this tolerance, pixels.
-        legend : bool, optional
-            Whether the picture has a legend.
-        source : str, optional
-            What the map is called.
-
-        Raises
-        ------
-        InputError, FileError
-            For a name that no form has, and what the system does not let be written.
-        """
-        given = {"labels": labels, "overlay": overlay, "planes": planes, "cloud": cloud, "mesh": mesh, "curved": curved}
-        files = [(name, os.fspath(path)) for name, path in given.items() if path is not None]
-        self._found.write(files, source, _outlines(outlines), legend)
-
-    def _encode(self, name: str, extension: str, source: str | None = None, outlines: float | None = None) -> bytes:
-        return self._found.encode(name, extension, source, _outlines(outlines))
 
     @cached_property
     def _depth_m(self) -> npt.NDArray[np.float32]:
@@ -489,6 +267,7 @@ class Planes:
         return rays
 
     def _outlines(self, tolerance: float, min_hole: int) -> _native.Outlines:
+        tolerance, min_hole = _accept.number("tolerance", tolerance, least=0), _accept.whole("min_hole", min_hole, least=0)
         known = self._known_outlines
         if (tolerance, min_hole) not in known:
             known[tolerance, min_hole] = self._found.outlines(tolerance, min_hole)
@@ -500,16 +279,28 @@ class Planes:
 
     def _label(self, k: int) -> int:
         """The label of plane k; negative k count from the end."""
-        return range(1, len(self) + 1)[k]
+        try:
+            return range(1, len(self) + 1)[k]
+        except IndexError:
+            raise InputIndexError(f"k is {k}; accepted: {self._accepted}") from None
+        except TypeError:
+            raise _accept.wrong_type("k", k, "a whole number, the place of a plane") from None
+
+    @property
+    def _accepted(self) -> str:
+        """The places that there are."""
+        return f"0 to {len(self) - 1}, the places of {len(self)} planes" if len(self) else "nothing, since there are no planes"
+
+    @property
+    def _is_selection(self) -> bool:
+        return self._places is not None
 
 
 def write(result: Planes, /, **files: Any) -> None:
     """Writes planes to files: `Planes.write`."""
+    if not isinstance(result, Planes):
+        raise _accept.wrong_type("result", result, "Planes")
     result.write(**files)
-
-
-def _outlines(tolerance: float | None) -> tuple[float, int] | None:
-    return None if tolerance is None else (tolerance, 0)
 
 
 def _metric(found: Any, metric: bool) -> Any:

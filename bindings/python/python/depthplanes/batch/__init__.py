@@ -8,16 +8,16 @@ ended early goes on when it is repeated. `read_rows` reads the parts. Tables nee
 from __future__ import annotations
 
 import io
-import os
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from .. import _accept
 from .._errors import FileError, InputError
 from .._optional import need
 from .._options import Path
 from ._engines import ENGINES
-from ._files import absolute, expand, storage
-from ._parts import Job, begin, has_failed, name_of, parts_in, settings_in
+from ._files import EXTRA, absolute, expand, storage
+from ._parts import Job, begin, counts_of, name_of, parts_in, settings_in
 from ._rows import Processor, Row, parquet, schema
 
 if TYPE_CHECKING:
@@ -27,18 +27,18 @@ __all__ = ["Summary", "process", "read_rows", "run"]
 
 
 class Summary(NamedTuple):
-    """What a run did."""
+    """What is in the folder of the parts, once a run has ended."""
 
     frames: int
     """All frames."""
-    done: int
-    """Those that this run looked at; the others were done by earlier runs."""
     failed: int
-    """Of these, the ones that could not be read or searched: rows with an `error`."""
+    """Those that could not be read or searched: rows with an `error`."""
     planes: int
-    """The planes of these."""
+    """The planes of all frames."""
     parts: int
     """All parts."""
+    skipped: int
+    """Frames that this run left out, since an earlier one had done them."""
 
 
 def process(path: Path, *, labels: Path | None = None, **options: Any) -> Row:
@@ -72,7 +72,8 @@ def process(path: Path, *, labels: Path | None = None, **options: Any) -> Row:
     >>> row["planes"], row["error"][:17]
     ([], 'nothing-there.png')
     """
-    return Processor(None if labels is None else absolute(labels), options)(os.fspath(path))
+    processor = Processor(None if labels is None else absolute("labels", labels), options)
+    return processor(_accept.path("path", path))
 
 
 def run(
@@ -95,9 +96,10 @@ def run(
     ----------
     paths : path, URL, or several
         Frames. A folder is the maps in it, without the program's results; a pattern (``*``, ``**``, ``?``) what matches; both by
-        name. They may be URLs of fsspec. Files of this machine have to be there, under the same names, for all workers.
+        name. A frame of a list that is not there is a row with its error. They may be URLs of fsspec. Files of this machine have to be there, under the same names, for all workers.
     out : path or URL
-        The folder of the parts, and of ``batch.json``, which says what was asked for. All workers write to it.
+        The folder of the parts, and of ``_batch.json`` and ``_frames.json``, which say what was asked for. All workers write to it.
+        What reads folders of Parquet, such as ``pandas.read_parquet(out)``, reads it.
     engine : {"local", "dask", "ray"}, optional
         Threads of this process, workers of Dask, or actors of Ray Data.
     workers : int, optional
@@ -122,26 +124,32 @@ def run(
     ------
     InputError, InputTypeError
         For options that are not accepted, paths without a frame, and a folder that has results of other options or frames.
+    MissingFileError
+        For a path or a folder that is not there.
     FileError
         If the workers have written where this process does not see it.
     MissingPackageError
         Without pyarrow, fsspec or the engine.
     """
     _check(engine, workers, part, client)
+    retry_failed = _accept.flag("retry_failed", retry_failed)
     job = Job.of(out, labels, options)
     frames = expand(paths)
     there = begin(job, frames, part)
     if retry_failed:
-        there = {number for number in there if not has_failed(job.out, number)}
+        numbers = sorted(there)
+        there = {number for number, counts in zip(numbers, counts_of(job.out, numbers), strict=True) if counts.failed == 0}
     parts = [(number, frames[at : at + part]) for number, at in enumerate(range(0, len(frames), part))]
     due = [(number, of_part) for number, of_part in parts if number not in there]
-    made = list(ENGINES[engine](job, due, workers, client)) if due else []
+    if due:
+        ENGINES[engine](job, due, workers, client)
     missing = len(parts) - len(parts_in(*storage(job.out)))
     if missing:
         text = f"{job.out}: {missing} of {len(parts)} parts were written, but not here"
         raise FileError(f"{text}; accepted: a folder or URL that this process shares with all workers")
-    done, failed, planes = (sum(counts) for counts in zip((0, 0, 0), *made, strict=True))
-    return Summary(len(frames), done, failed, planes, len(parts))
+    counts = counts_of(job.out, range(len(parts)))
+    failed, planes = sum(of.failed for of in counts), sum(of.planes for of in counts)
+    return Summary(len(frames), failed, planes, len(parts), len(frames) - sum(len(of_part) for _, of_part in due))
 
 
 def read_rows(out: Path, *, partial: bool = False) -> pyarrow.Table:
@@ -164,13 +172,13 @@ def read_rows(out: Path, *, partial: bool = False) -> pyarrow.Table:
     InputError
         For a folder without results, and for one that misses parts.
     """
-    arrow = need("pyarrow", "pyarrow", "batch.read_rows()")
-    files, folder = storage(absolute(out))
+    arrow = need("pyarrow", "pyarrow", "batch.read_rows()", EXTRA)
+    files, folder = storage(absolute("out", out))
     settings = settings_in(files, folder)
     if settings is None:
         raise InputError(f"{out} has no results; accepted: a folder that depthplanes.batch.run has written to")
     numbers, parts = sorted(parts_in(files, folder)), -(-settings["frames"] // settings["part"])
-    if len(numbers) < parts and not partial:
+    if len(numbers) < parts and not _accept.flag("partial", partial):
         text = f"{out} has {len(numbers)} of {parts} parts; repeat the run that they are of, or state partial=True"
         raise InputError(text)
     tables = [parquet().read_table(io.BytesIO(files.cat_file(f"{folder}/{name_of(number)}"))) for number in numbers]
@@ -178,11 +186,11 @@ def read_rows(out: Path, *, partial: bool = False) -> pyarrow.Table:
 
 
 def _check(engine: str, workers: int | None, part: int, client: Any) -> None:
-    if engine not in ENGINES:
-        raise InputError(f"engine={engine!r}; accepted: " + ", ".join(map(repr, ENGINES)))
-    for name, value in (("part", part), ("workers", workers)):
-        if value is not None and (not isinstance(value, int) or value < 1):
-            raise InputError(f"{name}={value!r}; accepted: a whole number from 1")
+    if _accept.text("engine", engine) not in ENGINES:
+        raise _accept.wrong_value("engine", engine, ", ".join(map(repr, ENGINES)))
+    _accept.whole("part", part, least=1)
+    if workers is not None:
+        _accept.whole("workers", workers, least=1)
     if client is not None and (engine != "dask" or workers is not None):
         text = f"client with engine={engine!r} and workers={workers!r}"
         raise InputError(f'{text}; accepted: engine="dask", and all workers of the client')

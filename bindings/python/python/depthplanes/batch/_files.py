@@ -10,7 +10,8 @@ from collections import Counter
 from collections.abc import Iterable
 from typing import Any
 
-from .._errors import InputError
+from .. import _accept
+from .._errors import InputError, MissingFileError
 from .._optional import need
 from .._options import Path
 from .._tables import tables
@@ -21,27 +22,32 @@ def is_url(path: str) -> bool:
     return "://" in path or "::" in path
 
 
-def absolute(path: Path) -> str:
-    """As workers understand it, whatever folder they run in."""
-    text = os.fspath(path)
+#: What brings the packages of tables and URLs.
+EXTRA = "'depthplanes[batch]'"
+
+
+def absolute(name: str, path: Path) -> str:
+    """As workers understand it, whatever folder they run in; `name` is that of the argument."""
+    text = _accept.path(name, path)
     return text if is_url(text) else os.path.abspath(text)
 
 
 def storage(path: str) -> tuple[Any, str]:
     """The file system of fsspec, and the path there."""
-    core = need("fsspec.core", "fsspec", "depthplanes.batch")
+    core = need("fsspec.core", "fsspec", "depthplanes.batch", EXTRA)
     files, inside = core.url_to_fs(path)
     return files, inside.rstrip("/")
 
 
 def write(files: Any, path: str, content: bytes) -> None:
-    """Writes a file beside its name and then renames it, so that it is whole or not there."""
-    beside = f"{path}.{uuid.uuid4().hex}.partial"
+    """Writes a file beside its name and then renames it, so that it is whole or not there. What is left of it nobody reads."""
+    folder, name = posixpath.split(path)
+    beside = f"{folder}/.{name}.{uuid.uuid4().hex}.partial"
     try:
         try:
             files.pipe_file(beside, content)
         except FileNotFoundError:
-            files.makedirs(posixpath.dirname(path), exist_ok=True)
+            files.makedirs(folder, exist_ok=True)
             files.pipe_file(beside, content)
         files.mv(beside, path)
     except BaseException:
@@ -57,9 +63,15 @@ def expand(paths: Path | Iterable[Path]) -> list[str]:
     ------
     InputError
         If there is none, or one more than once.
+    MissingFileError
+        For a path by itself that is not there, and a folder.
     """
-    words = [paths] if isinstance(paths, (str, os.PathLike)) else list(paths)
-    frames = [frame for word in words for frame in _expand_word(absolute(word))]
+    is_one = isinstance(paths, (str, os.PathLike))
+    try:
+        words = [paths] if is_one else list(paths)  # type: ignore[arg-type]
+    except TypeError:
+        raise _accept.wrong_type("paths", paths, "a path, or several") from None
+    frames = [frame for word in words for frame in _expand_word(absolute("paths", word), is_one)]  # type: ignore[arg-type]
     if not frames:
         raise InputError("there is no path; accepted: frames, folders, patterns, and URLs of these")
     frame, count = Counter(frames).most_common(1)[0]
@@ -68,10 +80,10 @@ def expand(paths: Path | Iterable[Path]) -> list[str]:
     return frames
 
 
-def _expand_word(word: str) -> list[str]:
+def _expand_word(word: str, is_one: bool) -> list[str]:
     path, joint, outer = word.partition("::")
     is_pattern = any(sign in path for sign in "*?[")
-    if _is_map(path) and not is_pattern:
+    if _is_map(path) and not is_pattern and not is_one:
         return [word]  # of which the system need not be asked, since there are many
     files, inside = storage(word)
     if is_pattern and not files.exists(inside):
@@ -80,8 +92,10 @@ def _expand_word(word: str) -> list[str]:
     elif files.isdir(inside):
         found = [entry["name"] for entry in files.ls(inside, detail=True) if entry["type"] == "file" and _is_map(entry["name"])]
         lacking = f"no map in this folder; looked for *{', *'.join(_endings())}"
-    else:
+    elif files.exists(inside):
         return [word]
+    else:
+        raise MissingFileError(f"{word}: there is no such file or folder")
     if not found:
         raise InputError(f"{word}: {lacking}")
     return sorted(files.unstrip_protocol(path) + joint + outer if is_url(word) else path for path in found)

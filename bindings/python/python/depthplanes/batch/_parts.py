@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-import io
 import json
 import os
 import posixpath
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,14 +19,22 @@ from .._tables import tables
 from ._files import absolute, storage, write
 from ._rows import Processor, Row, packed, parquet, schema
 
-#: The file beside the parts that says what was asked for, and its form.
-SETTINGS = "batch.json"
+#: The files beside the parts that say what was asked for, and of which frames. Readers of folders of Parquet leave out
+#: what begins with `_`.
+SETTINGS = "_batch.json"
+FRAMES = "_frames.json"
 SCHEMA = "depthplanes.batch/1"
 #: Options that may be files; workers read them again.
 FILES = ("camera", "noise_table")
+#: Threads that wait for the ends of files.
+READERS = 16
 
-#: Frames, failed frames and planes of a part.
-Counts = tuple[int, int, int]
+
+class Counts(NamedTuple):
+    """What is in a part, or in several."""
+
+    failed: int
+    planes: int
 
 
 class Job(NamedTuple):
@@ -39,19 +47,18 @@ class Job(NamedTuple):
     @classmethod
     def of(cls, out: Path, labels: Path | None, options: Mapping[str, Any]) -> Job:
         """The same with paths that do not depend on the folder that a worker runs in."""
-        paths = {name: absolute(options[name]) for name in FILES if isinstance(options.get(name), (str, os.PathLike))}
-        return cls(absolute(out), None if labels is None else absolute(labels), {**options, **paths})
+        paths = {name: absolute(name, options[name]) for name in FILES if isinstance(options.get(name), (str, os.PathLike))}
+        return cls(absolute("out", out), None if labels is None else absolute("labels", labels), {**options, **paths})
 
     def processor(self) -> Processor:
         """What turns frames into rows."""
         return Processor(self.labels, self.options)
 
-    def write(self, number: int, rows: list[Row]) -> Counts:
+    def write(self, number: int, rows: list[Row]) -> None:
         """Writes a part."""
         files, folder = storage(self.out)
-        write(files, f"{folder}/{name_of(number)}", packed(rows))
-        failed = sum(row["error"] is not None for row in rows)
-        return len(rows), failed, sum(len(row["planes"]) for row in rows)
+        counts = Counts(sum(row["error"] is not None for row in rows), sum(len(row["planes"]) for row in rows))
+        write(files, f"{folder}/{name_of(number)}", packed(rows, counts._asdict()))
 
 
 def begin(job: Job, frames: list[str], part: int) -> set[int]:
@@ -64,19 +71,41 @@ def begin(job: Job, frames: list[str], part: int) -> set[int]:
     """
     schema()  # a package that is missing is missed before any work
     files, folder = storage(job.out)
-    settings = _settings(job, frames, part)
+    settings = _settings(job, part)
     known = settings_in(files, folder)
     if known is None:
-        write(files, f"{folder}/{SETTINGS}", (json.dumps(settings, indent=1) + "\n").encode())
-    elif known != settings:
-        others = [f"{name}: {known.get(name)} instead of {value}" for name, value in settings.items() if known.get(name) != value]
-        text = f"{job.out} has results of other settings: " + "; ".join(others)
-        raise InputError(f"{text}; accepted: the same ones, or another folder")
+        write(files, f"{folder}/{FRAMES}", _packed(frames))
+        write(files, f"{folder}/{SETTINGS}", _packed(settings | {"frames": len(frames)}))
+        return parts_in(files, folder)
+    others = [f"{name}: {known.get(name)} instead of {value}" for name, value in settings.items() if known.get(name) != value]
+    if others:
+        raise InputError(f"{job.out} has results of other settings: {'; '.join(others)}; accepted: the same ones, or another folder")
+    _check_frames(job.out, files.cat_file(f"{folder}/{FRAMES}"), frames)
     return parts_in(files, folder)
 
 
-def _settings(job: Job, frames: list[str], part: int) -> Row:
-    """All that rows depend on, and which frame is in which part."""
+def _check_frames(out: str, known: bytes, frames: list[str]) -> None:
+    """Refuses frames that are not those of the results."""
+    before = json.loads(known)
+    if before == frames:
+        return
+    added, gone = len(set(frames) - set(before)), len(set(before) - set(frames))
+    if added or gone:
+        changed = f"since then {added} were added and {gone} have gone"
+    else:
+        changed = "which were in another order"
+    raise InputError(
+        f"{out} has results of {len(before)} frames, {changed}; accepted: the frames of then, or another folder: for all frames, or for "
+        "those that were added alone"
+    )
+
+
+def _packed(record: Any) -> bytes:
+    return (json.dumps(record, indent=1) + "\n").encode()
+
+
+def _settings(job: Job, part: int) -> Row:
+    """All that rows depend on beside their frames."""
     detector = job.processor().detector
     known = {"method", "threads"}  # planes do not depend on the number of threads
     known |= {parameter["name"] for method in tables()["methods"] for parameter in method["parameters"]}
@@ -89,8 +118,6 @@ def _settings(job: Job, frames: list[str], part: int) -> Row:
         "files_sha256": {name: _checksum(job.options[name]) for name in FILES if isinstance(job.options.get(name), str)},
         "labels": job.labels,
         "part": part,
-        "frames": len(frames),
-        "frames_sha256": hashlib.sha256("\n".join(frames).encode()).hexdigest(),
     }
     as_read: Row = json.loads(json.dumps(settings, default=lambda value: np.asarray(value).tolist()))
     return as_read
@@ -128,8 +155,14 @@ def parts_in(files: Any, folder: str) -> set[int]:
     return {int(number) for number in numbers}
 
 
-def has_failed(out: str, number: int) -> bool:
-    """Whether a part has a frame with an error."""
+def counts_of(out: str, numbers: Iterable[int]) -> list[Counts]:
+    """What is in each of these parts, by the ends of their files."""
     files, folder = storage(out)
-    table = parquet().read_table(io.BytesIO(files.cat_file(f"{folder}/{name_of(number)}")), columns=["error"])
-    return bool(table["error"].null_count < table.num_rows)
+
+    def counts(number: int) -> Counts:
+        with files.open(f"{folder}/{name_of(number)}", "rb") as file:
+            known = parquet().read_schema(file).metadata
+        return Counts(*(int(known[name.encode()]) for name in Counts._fields))
+
+    with ThreadPoolExecutor(READERS) as threads:
+        return list(threads.map(counts, numbers))

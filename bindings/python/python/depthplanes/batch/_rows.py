@@ -15,9 +15,9 @@ import numpy as np
 from .._detector import Detector
 from .._frame import read
 from .._optional import need
-from .._options import split
+from .._options import STATED
 from .._planes import Planes
-from ._files import is_url, storage, write
+from ._files import EXTRA, is_url, storage, write
 
 Row = dict[str, Any]
 
@@ -35,13 +35,10 @@ class Processor:
     """
 
     def __init__(self, labels: str | None, options: Mapping[str, Any]) -> None:
-        stated, searching = split(options)
-        method = searching.pop("method", "planar")
-        stated |= {name: searching.pop(name) for name in ("sensor", "camera", "unit") if name in searching}
-        Detector(method=method, **stated, **searching)  # what is wrong is refused before any frame is read
-        self._stated = stated
+        Detector(**options)  # what is wrong is refused before any frame is read
+        self._stated = {name: value for name, value in options.items() if name in (*STATED, "sensor", "camera", "unit")}
         self._labels = labels
-        self.detector = Detector(method=method, **searching)
+        self.detector = Detector(**{name: value for name, value in options.items() if name not in self._stated})
 
     def __call__(self, path: str) -> Row:
         nothing: Row = {"path": path, "error": None, "width": None, "height": None, "valid_pixels": None}
@@ -60,7 +57,7 @@ class Processor:
         planes, _ = self.detector._find(frame)
         record = planes.to_dict()
         row = {name: record[name] for name in ("width", "height", "valid_pixels")}
-        row |= {"notes": record["warnings"], "planes": _rows_of(planes)}
+        row |= {"notes": planes.notes, "planes": _rows_of(planes)}
         if self._labels is not None:
             row["labels"] = _write_labels(self._labels, path, planes)
         return row
@@ -89,21 +86,21 @@ def _write_labels(folder: str, path: str, planes: Planes) -> str:
 
 def parquet() -> Any:
     """The module that reads and writes tables."""
-    return need("pyarrow.parquet", "pyarrow", "depthplanes.batch")
+    return need("pyarrow.parquet", "pyarrow", "depthplanes.batch", EXTRA)
 
 
-def packed(rows: list[Row]) -> bytes:
-    """Rows as a file of Parquet."""
-    arrow = need("pyarrow", "pyarrow", "depthplanes.batch")
+def packed(rows: list[Row], counts: Mapping[str, int]) -> bytes:
+    """Rows as a file of Parquet, at whose end the counts are."""
+    arrow = need("pyarrow", "pyarrow", "depthplanes.batch", EXTRA)
     file = io.BytesIO()
-    parquet().write_table(arrow.Table.from_pylist(rows, schema=schema()), file, compression="zstd")
+    parquet().write_table(arrow.Table.from_pylist(rows, schema=schema().with_metadata({name: str(count) for name, count in counts.items()})), file, compression="zstd")
     return file.getvalue()
 
 
 @functools.cache
 def schema() -> Any:
     """The columns of the table, of pyarrow."""
-    arrow = need("pyarrow", "pyarrow", "depthplanes.batch")
+    arrow = need("pyarrow", "pyarrow", "depthplanes.batch", EXTRA)
     nothing, _ = Detector()._find(np.zeros((2, 2), np.uint8))
     columns = nothing._encode("planes", "csv").decode().strip().split(",")[1:]
     plane = arrow.struct([(name, arrow.int64() if name in WHOLE else arrow.float64()) for name in columns])
