@@ -35,6 +35,13 @@ private:
     dp_status status_;
 };
 
+/// A text for C, which ends at its first zero byte: one within it is refused.
+inline const char *text(const std::string &of) {
+    if (of.find('\0') != std::string::npos)
+        throw Error(DP_INVALID_ARGUMENT, ("`" + std::string(of.c_str()) + "...` has a zero byte in it; accepted: text").c_str());
+    return of.c_str();
+}
+
 /// Values side by side in memory that somebody else owns, as std::span of C++20.
 template <class T> class Span {
 public:
@@ -108,7 +115,13 @@ public:
     Span<const dp_plane> planes() const noexcept { return {dp_detection_planes(get()), dp_detection_plane_count(get())}; }
 
     /// The plane with that label.
-    const dp_plane &plane(std::uint16_t label) const { return planes().at(std::size_t{label} - 1); }
+    const dp_plane &plane(std::uint16_t label) const {
+        if (label == 0 || label > planes().size()) {
+            const std::string there = std::to_string(planes().size());
+            throw Error(DP_INVALID_ARGUMENT, ("there is no plane " + std::to_string(label) + "; there are " + there).c_str());
+        }
+        return planes()[std::size_t{label} - 1];
+    }
 
     /// Places in the label image of the pixels of a plane, in order, as the indices of an organised point cloud.
     std::vector<int> indices(std::uint16_t label) const {
@@ -224,21 +237,21 @@ public:
     Detector() : Detector(dp_detector_new(nullptr)) {}
 
     /// Of the method of that name (`methods`).
-    explicit Detector(const std::string &method) : Detector(dp_detector_new(method.c_str())) {}
+    explicit Detector(const std::string &method) : Detector(dp_detector_new(text(method))) {}
 
     /// A number by name: a parameter of the method, or what `dp_detector_set` lists.
-    Detector &set(const std::string &name, double value) { return done(dp_detector_set(get(), name.c_str(), value)); }
+    Detector &set(const std::string &name, double value) { return done(dp_detector_set(get(), text(name), value)); }
 
     /// The same as text, as on a command line.
     Detector &set_text(const std::string &name, const std::string &value) {
-        return done(dp_detector_set_text(get(), name.c_str(), value.c_str()));
+        return done(dp_detector_set_text(get(), text(name), text(value)));
     }
 
     /// The sensor by name (`sensors`): unit, nominal camera, noise.
-    Detector &sensor(const std::string &name) { return done(dp_detector_set_sensor(get(), name.c_str())); }
+    Detector &sensor(const std::string &name) { return done(dp_detector_set_sensor(get(), text(name))); }
 
     /// What the numbers mean, by name (`units`).
-    Detector &unit(const std::string &name) { return done(dp_detector_set_unit(get(), name.c_str())); }
+    Detector &unit(const std::string &name) { return done(dp_detector_set_unit(get(), text(name))); }
 
     /// Focal lengths and principal point, pixels.
     Detector &camera(double fx, double fy, double cx, double cy) {
@@ -246,7 +259,7 @@ public:
     }
 
     /// A camera file of any program that is known.
-    Detector &camera_file(const std::string &path) { return done(dp_detector_set_camera_file(get(), path.c_str())); }
+    Detector &camera_file(const std::string &path) { return done(dp_detector_set_camera_file(get(), text(path))); }
 
     /// Only values from `low` to `high`, in map units, are measurements.
     Detector &valid_range(double low, double high) { return done(dp_detector_set_valid_range(get(), low, high)); }
@@ -336,8 +349,8 @@ inline Span<const dp_name> units() { return rows(dp_units); }
 /// The depth of an organised point cloud, metres along z, for a Map of floats: of pcl::PointCloud and whatever else has
 /// `width`, `height` and `points[i].z`.
 template <class Cloud> std::vector<float> depth_of(const Cloud &cloud) {
-    if (cloud.height < 2)
-        throw Error(DP_INVALID_ARGUMENT, "the cloud has one row; accepted: an organised cloud, width x height of a camera");
+    if (cloud.height < 2 || cloud.points.size() != std::size_t{cloud.width} * cloud.height)
+        throw Error(DP_INVALID_ARGUMENT, "the cloud is not organised; accepted: width x height points of a camera, row by row");
     std::vector<float> depth;
     depth.reserve(cloud.points.size());
     for (const auto &point : cloud.points)

@@ -72,6 +72,21 @@ impl dp_detector {
         self.reader.insert(reader).read(map)
     }
 
+    /// Reads the map that a detection is of once more.
+    ///
+    /// # Errors
+    /// Its numbers mean something else than those that the detection is of: another type, another unit of this detector.
+    fn read_of<'m>(&mut self, map: &Pixels<'m>, detection: &dp_detection) -> Result<Read<'m>> {
+        let read = self.read(map)?;
+        if read.sensor().value_kind != detection.sensor.value_kind {
+            let what = "the numbers of the map mean something else than those that the detection is of";
+            return Err(Error::invalid(format!(
+                "{what}; accepted: its map, and a detector with the same type of pixels and unit"
+            )));
+        }
+        Ok(read)
+    }
+
     /// The detector that is idle, or a new one. It does not come back if something fails: then its memory is anybody's.
     fn finder(&mut self, sensor: Sensor) -> Result<Detector> {
         let finder = self.idle.take().map_or_else(|| self.settings.detector(), Ok)?;
@@ -128,7 +143,7 @@ impl dp_detector {
             let is_disparity = sensor.value_kind == ValueKind::Disparity;
             return Err(depthplanes::Error::NotMetric { wants: "points", is_disparity }.into());
         }
-        let read = self.read(&map)?;
+        let read = self.read_of(&map, detection)?;
         with_view!(read.view()?, view => {
             let valid = view.validity();
             for ([u, v], place) in found.pixels_of(label).zip(places) {
@@ -145,7 +160,7 @@ impl dp_detector {
         ground.clear();
         let map = map.checked()?;
         let found = detection.found_in(&map)?;
-        Ok(ground.find(self.read(&map)?.view()?, found, &detection.sensor)?)
+        Ok(ground.find(self.read_of(&map, detection)?.view()?, found, &detection.sensor)?)
     }
 
     fn track(
@@ -159,7 +174,7 @@ impl dp_detector {
         let found = detection.found_in(&map)?;
         let pose = pose.map(|rows| CameraPose::new(rows.map(|[x, y, z, _]| [x, y, z]), rows.map(|row| row[3])));
         let pose = pose.transpose()?;
-        Ok(tracker.track(self.read(&map)?.view()?, found, &detection.sensor, pose.as_ref())?)
+        Ok(tracker.track(self.read_of(&map, detection)?.view()?, found, &detection.sensor, pose.as_ref())?)
     }
 
     fn explain(&mut self, map: &dp_map, at: [usize; 2]) -> Result<()> {

@@ -132,6 +132,19 @@ static void after_detection(dp_detector *detector, dp_detection *detection)
     REFUSED(detector, dp_detector_points(detector, &wall, detection, 1, points, room), DP_NOT_METRIC, "points");
     REFUSED(detector, dp_detector_explain(detector, &wall, WIDTH, 0, &text), DP_INVALID_ARGUMENT, "columns 0 to 63");
     CHECK(text == NULL);
+    static float metres[WIDTH * HEIGHT];
+    for (size_t at = 0; at < WIDTH * HEIGHT; at++)
+        metres[at] = 7;
+    const dp_map other = {metres, DP_FLOAT32, WIDTH, HEIGHT, 0};
+    dp_detector *metric = dp_detector_new("ngaf");
+    CHECK(dp_detector_set_camera(metric, 50, 50, 31.5, 23.5) == DP_OK && dp_detector_detect(metric, &wall, detection) == DP_OK);
+    CHECK(dp_detector_points(metric, &wall, detection, 1, points, room) == DP_OK && points[0][2] == 2);
+    REFUSED(metric, dp_detector_points(metric, &other, detection, 1, points, room), DP_INVALID_ARGUMENT, "mean something else");
+    dp_detector_free(metric);
+    dp_detector *of_other_unit = dp_detector_new("ngaf");
+    CHECK(dp_detector_set_unit(of_other_unit, "tum") == DP_OK);
+    REFUSED(of_other_unit, dp_detector_points(of_other_unit, &wall, detection, 1, points, room), DP_INVALID_ARGUMENT, "mean something else");
+    dp_detector_free(of_other_unit);
     dp_detection *empty = dp_detection_new();
     REFUSED(detector, dp_detector_points(detector, &wall, empty, 1, points, room), DP_INVALID_ARGUMENT, "not of this map");
     CHECK(dp_detection_width(empty) == 0 && !dp_detection_labels(empty) && !dp_detection_planes(empty));
