@@ -1,8 +1,9 @@
 // The page as people use it: opened from a file in Chromium, which has no network.
 
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
-import { readFile, writeFile } from "node:fs/promises";
+import { cp, readFile, writeFile } from "node:fs/promises";
 import { createServer } from "node:http";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -11,6 +12,7 @@ import { browser, colours, serialAbove, until } from "../../../tests/browser/sup
 import { WRITERS } from "./formats.mjs";
 import { BUILT, DATA, assertDocument, dp, labelsOf, native, program, recorded, skip, withFolder, written } from "./support.mjs";
 
+const ROOT = join(import.meta.dirname, "../../..");
 const PAGE = pathToFileURL(join(BUILT, "depthplanes.html")).href;
 
 let chrome;
@@ -445,20 +447,50 @@ test("it fits a small screen", () => withPage(async page => {
     }
 }));
 
-test("the snippet of HTML on the page of the docs runs in a browser", async () => {
-    const text = await readFile(join(import.meta.dirname, "../../../docs/browser.md"), "utf8");
-    const [, html] = /^```html\n([^]*?)^```/m.exec(text);
+/** The first snippet of the docs in a language. */
+async function snippet(language) {
+    const text = await readFile(join(ROOT, "docs/browser.md"), "utf8");
+    return new RegExp(`^\`\`\`${language}\\n([^]*?)^\`\`\``, "m").exec(text)[1];
+}
+
+/** What a page of HTML shows, with a folder of files beside it; those that are not there are not found. */
+async function served(folder, html, words) {
     const types = { js: "text/javascript", wasm: "application/wasm" };
     const server = createServer(async ({ url }, response) => {
-        const [name] = url.split("/depthplanes/").slice(1);
-        response.setHeader("Content-Type", types[name?.split(".").pop()] ?? "text/html");
-        response.end(name ? await readFile(join(BUILT, "package", name)) : `<!doctype html>${html}`);
+        const bytes = url === "/" ? `<!doctype html>${html}` : await readFile(join(folder, url)).catch(() => null);
+        response.writeHead(bytes === null ? 404 : 200, { "Content-Type": types[url.split(".").pop()] ?? "text/html" });
+        response.end(bytes);
     });
     await new Promise(resolve => server.listen(0, "127.0.0.1", resolve));
     const own = await browser();
-    const page = await own.context.newPage();
-    await page.goto(`http://127.0.0.1:${server.address().port}/`);
-    await until(async () => assert.match(await page.locator("body").innerText(), /\d+ planes/));
-    await own.close();
-    server.close();
-});
+    try {
+        const page = await own.context.newPage();
+        const failed = new Promise(resolve => page.on("pageerror", error => resolve(error.message)));
+        await page.goto(`http://127.0.0.1:${server.address().port}/`);
+        const text = until(async () => (assert.match(await page.locator("body").innerText(), /\d+ planes/), "planes"));
+        assert.match(await Promise.race([text, failed]), words);
+    } finally {
+        await own.close();
+        server.close();
+    }
+}
+
+test("the snippet of HTML on the page of the docs runs in a browser", () => withFolder(async folder => {
+    await cp(join(BUILT, "package"), join(folder, "depthplanes"), { recursive: true });
+    await served(folder, await snippet("html"), /^planes$/);
+}));
+
+test("bundled by esbuild as the docs say it runs in a browser, and otherwise it is said what to do", () => withFolder(async folder => {
+    await cp(join(BUILT, "package"), join(folder, "node_modules/depthplanes"), { recursive: true });
+    const code = await snippet("javascript");
+    const esbuild = join(ROOT, "crates/depthplanes-serve/page/node_modules/.bin/esbuild");
+    const [, words] = /^esbuild (.*)$/m.exec(await readFile(join(ROOT, "docs/browser.md"), "utf8"));
+    const bundle = () => execFileSync(esbuild, words.split(" "), { cwd: folder, stdio: "pipe" });
+    const html = '<body><script type="module" src="/page.js"></script>';
+    await writeFile(join(folder, "page.js"), code);
+    bundle();
+    await served(join(folder, "public"), html, /^planes$/);
+    await writeFile(join(folder, "page.js"), code.replace(/^.*\.wasm";\n/m, "").replace("load(wasm)", "load()"));
+    bundle();
+    await served(join(folder, "public"), html, /depthplanes\.wasm: 404.*import wasm from "depthplanes\/depthplanes\.wasm".*--loader:\.wasm=file/);
+}));
