@@ -5,7 +5,7 @@ const OTHERS: Record<string, string> = { preset: "sensor", encoding: "unit", int
 
 /** Phrases that speak of the program, as they are before its flags are translated. */
 const PHRASES: readonly (readonly [RegExp, string])[] = [
-    [/see `detect --curved`/g, "--curved gives it a label"],
+    [/see `detect --curved`/g, "--curved labels it"],
     [/ \(cargo install [^)]*\)/g, ""],
     [/`depthplanes encodings` lists them/g, "the list of --encoding has them"],
     [/--intrinsics fx,fy,cx,cy, --camera FILE or --preset SENSOR/g, "--camera or --preset"],
