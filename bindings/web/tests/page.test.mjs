@@ -1,57 +1,13 @@
 // The page as people use it: opened from a file in Chromium, which has no network.
 
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import { createHash } from "node:crypto";
-import { cp, readFile, writeFile } from "node:fs/promises";
-import { createServer } from "node:http";
+import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
-import { pathToFileURL } from "node:url";
-import { browser, colours, serialAbove, until } from "../../../tests/browser/support.mjs";
+import { test } from "node:test";
+import { browser, colours, until } from "../../../tests/browser/support.mjs";
 import { WRITERS } from "./formats.mjs";
-import { BUILT, DATA, assertDocument, dp, labelsOf, native, program, recorded, skip, withFolder, written } from "./support.mjs";
-
-const ROOT = join(import.meta.dirname, "../../..");
-const PAGE = pathToFileURL(join(BUILT, "depthplanes.html")).href;
-
-let chrome;
-before(async () => chrome = await browser());
-after(() => chrome?.close());
-
-/** Opens the page without a network; it has asked nobody for anything and complained of nothing in the end. */
-async function withPage(use, { context = chrome.context, allowed = /^$/ } = {}) {
-    const page = await context.newPage();
-    const complaints = [];
-    page.on("pageerror", error => complaints.push(error.stack));
-    page.on("console", message => message.type() === "error" && complaints.push(message.text()));
-    page.on("request", request => /^(file|blob|data):/.test(request.url()) || complaints.push(`asks ${request.url()}`));
-    await context.setOffline(true);
-    await page.goto(PAGE);
-    await serialAbove(page, 0);
-    await use(page);
-    assert.deepEqual(complaints.filter(text => !allowed.test(text)), []);
-    await page.close();
-}
-
-/** Does something and waits until it is drawn. */
-async function drawn(page, act) {
-    const before = await page.evaluate(() => Number(document.body.dataset.serial));
-    await act();
-    await serialAbove(page, before);
-}
-
-const open = (page, file) => drawn(page, () => page.setInputFiles("#file", file));
-const planes = page => page.locator("#planes tbody tr").count();
-const banner = page => page.locator("#banner").textContent();
-/** Whether the map of the page has these labels. */
-async function hasLabels(page, labels) {
-    const shown = await page.evaluate(async () => {
-        const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", window.depthplanes.frame.labels));
-        return [...digest].map(byte => byte.toString(16).padStart(2, "0")).join("");
-    });
-    return shown === createHash("sha256").update(labels).digest("hex");
-}
+import { banner, drawn, hasLabels, open, planes, type, withPage, writeMap } from "./page.mjs";
+import { DATA, assertDocument, dp, labelsOf, native, program, recorded, skip, withFolder, written } from "./support.mjs";
 
 /** The largest patch of a plane, or of none, as a point of the drawing. */
 function pixelWhere(page, hasPlane) {
@@ -245,97 +201,6 @@ test("files that are none, and cameras that are none, say what is wrong", () => 
     assert.equal(await page.locator("#view3d .hint").isHidden(), true);
 })));
 
-/** Writes a map of millimetres into a folder; the path of the file. */
-async function writeMap(folder, name, spec) {
-    const { depth, width, height } = dp.scene(spec);
-    await writeFile(join(folder, name), WRITERS[name.endsWith("raw") ? "raw" : "pnm"][1]({ depth, width, height }));
-    return join(folder, name);
-}
-
-/** Types into a field. */
-async function type(page, field, text) {
-    await page.locator(field).fill(text);
-    await page.locator(field).press("Enter");
-}
-
-test("a map that is refused waits until what is stated of it is mended", () => withFolder(folder => withPage(async page => {
-    const large = await writeMap(folder, "large.pgm", "boxes:sensor=clean_mm,size=320x240");
-    const small = await writeMap(folder, "small.pgm", "boxes:sensor=clean_mm,size=160x120");
-    await open(page, large);
-    await drawn(page, () => type(page, "#camera", "290, 290, 199.5, 149.5"));
-    assert.equal(await page.locator("#carried").isHidden(), true);
-    await page.setInputFiles("#file", small);
-    await until(async () => assert.match(await banner(page), /^small\.pgm: .*principal point/));
-    assert.match(await page.locator("#refused").textContent(), /^small\.pgm was not read/);
-    assert.match(await page.locator("#carried").textContent(), /^Stated for the map before: Camera\./);
-    assert.match(await page.locator("#frame-name").textContent(), /^large\.pgm/);
-    // How planes are looked for still acts on what is shown, and the other one still waits.
-    await drawn(page, () => page.selectOption("#method", "ngaf"));
-    assert.match(await page.locator("#frame-name").textContent(), /^large\.pgm/);
-    assert.match(await banner(page), /^small\.pgm: /);
-    await drawn(page, () => page.click("#clear-carried"));
-    assert.match(await page.locator("#frame-name").textContent(), /^small\.pgm/);
-    for (const id of ["#banner", "#refused", "#carried"]) assert.equal(await page.locator(id).isHidden(), true, id);
-    assert.equal(await page.locator("#camera").inputValue(), "");
-    assert.equal(await page.locator("#method").inputValue(), "ngaf");
-    // What waits can be given up.
-    await type(page, "#camera", "290, 290, 199.5, 149.5");
-    await until(async () => assert.equal(await page.locator("#refused").isHidden(), false));
-    await page.click("#give-up");
-    assert.equal(await page.locator("#camera").inputValue(), "");
-    assert.equal(await page.locator("#banner").isHidden(), true);
-})));
-
-test("a size of files without a header can be cleared, and stated again", () => withFolder(folder => withPage(async page => {
-    const raw = await writeMap(folder, "boxes.raw", "boxes:sensor=clean_mm,size=160x120");
-    await page.setInputFiles("#file", raw);
-    await until(async () => assert.match(await banner(page), /“Raw size”/));
-    await drawn(page, () => type(page, "#raw-size", "160 x 120"));
-    assert.match(await page.locator("#frame-name").textContent(), /^boxes\.raw · 160 × 120/);
-    await type(page, "#raw-size", "");
-    await until(async () => assert.match(await banner(page), /“Raw size”/));
-    assert.equal(await page.locator("#raw-size").inputValue(), "");
-    await drawn(page, () => type(page, "#raw-size", "120 x 160"));
-    assert.match(await page.locator("#frame-name").textContent(), /^boxes\.raw · 120 × 160/);
-})));
-
-test("disparity of a rig has metres by its fields", () => withFolder(folder => withPage(async page => {
-    const { depth } = dp.scene("boxes:sensor=clean_mm,size=160x120");
-    const disparity = Uint16Array.from(depth, mm => mm && Math.round(16 * 145 * 100 / mm));
-    const file = join(folder, "disparity.pgm");
-    await writeFile(file, WRITERS.pnm[1]({ depth: disparity, width: 160, height: 120 }));
-    await open(page, file);
-    await page.locator("#more").evaluate(element => element.parentElement.open = true);
-    await drawn(page, () => page.selectOption("#unit", "disparity"));
-    await drawn(page, () => type(page, "#scale", "16"));
-    await drawn(page, () => type(page, "#camera", "145, 145, 79.5, 59.5"));
-    await drawn(page, () => type(page, "#baseline", "0.1"));
-    await drawn(page, () => type(page, "#valid-range", "1, 2000"));
-    assert.equal(await page.locator("#view3d .hint").isHidden(), true);
-    assert.match(await page.locator("#planes tbody tr").first().textContent(), /\d m.*m²/);
-    const words = ["--encoding=disparity", "--scale=16", "--intrinsics=145,145,79.5,59.5", "--baseline=0.1", "--valid-range=1,2000"];
-    program(["detect", "disparity.pgm", "--labels", "labels.png", ...words], folder);
-    assert.ok(await hasLabels(page, labelsOf(await readFile(join(folder, "labels.png")))));
-    await type(page, "#missing", "none");
-    await until(async () => assert.match(await banner(page), /missing is "none"; accepted: a number/));
-})));
-
-test("a camera file is dropped beside a map, or after it", () => withFolder(folder => withPage(async page => {
-    const map = await writeMap(folder, "boxes.pgm", "boxes:sensor=clean_mm,size=160x120");
-    const [matrix, other] = ["K.txt", "camera.json"].map(name => join(folder, name));
-    await writeFile(matrix, "145 0 79.5\n0 145 59.5\n0 0 1\n");
-    await writeFile(other, JSON.stringify({ fx: 150, fy: 150, cx: 79.5, cy: 59.5, width: 160, height: 120 }));
-    await open(page, [matrix, map]);
-    assert.equal(await page.locator("#camera").inputValue(), "K.txt");
-    assert.equal(await page.locator("#carried").isHidden(), true);
-    assert.match(await page.locator("#in-use").textContent(), /145, 145, 79\.5, 59\.5 of K\.txt/);
-    await open(page, other);
-    assert.match(await page.locator("#frame-name").textContent(), /^boxes\.pgm/);
-    assert.match(await page.locator("#in-use").textContent(), /150, 150, 79\.5, 59\.5 of camera\.json/);
-    await page.setInputFiles("#file", [map, await writeMap(folder, "again.pgm", "boxes:sensor=clean_mm,size=160x120")]);
-    await until(async () => assert.match(await banner(page), /boxes\.pgm, again\.pgm: one map at a time/));
-})));
-
 test("without points there are no ids in space", () => withFolder(folder => withPage(async page => {
     const overlay = page.locator("#view3d .overlay");
     assert.equal(await overlay.isVisible(), true);
@@ -445,52 +310,4 @@ test("it fits a small screen", () => withPage(async page => {
         const box = await page.locator(id).boundingBox();
         assert.ok(box.x >= 0 && box.x + box.width <= 390, `${id} ${JSON.stringify(box)}`);
     }
-}));
-
-/** The first snippet of the docs in a language. */
-async function snippet(language) {
-    const text = await readFile(join(ROOT, "docs/browser.md"), "utf8");
-    return new RegExp(`^\`\`\`${language}\\n([^]*?)^\`\`\``, "m").exec(text)[1];
-}
-
-/** What a page of HTML shows, with a folder of files beside it; those that are not there are not found. */
-async function served(folder, html, words) {
-    const types = { js: "text/javascript", wasm: "application/wasm" };
-    const server = createServer(async ({ url }, response) => {
-        const bytes = url === "/" ? `<!doctype html>${html}` : await readFile(join(folder, url)).catch(() => null);
-        response.writeHead(bytes === null ? 404 : 200, { "Content-Type": types[url.split(".").pop()] ?? "text/html" });
-        response.end(bytes);
-    });
-    await new Promise(resolve => server.listen(0, "127.0.0.1", resolve));
-    const own = await browser();
-    try {
-        const page = await own.context.newPage();
-        const failed = new Promise(resolve => page.on("pageerror", error => resolve(error.message)));
-        await page.goto(`http://127.0.0.1:${server.address().port}/`);
-        const text = until(async () => (assert.match(await page.locator("body").innerText(), /\d+ planes/), "planes"));
-        assert.match(await Promise.race([text, failed]), words);
-    } finally {
-        await own.close();
-        server.close();
-    }
-}
-
-test("the snippet of HTML on the page of the docs runs in a browser", () => withFolder(async folder => {
-    await cp(join(BUILT, "package"), join(folder, "depthplanes"), { recursive: true });
-    await served(folder, await snippet("html"), /^planes$/);
-}));
-
-test("bundled by esbuild as the docs say it runs in a browser, and otherwise it is said what to do", () => withFolder(async folder => {
-    await cp(join(BUILT, "package"), join(folder, "node_modules/depthplanes"), { recursive: true });
-    const code = await snippet("javascript");
-    const esbuild = join(ROOT, "crates/depthplanes-serve/page/node_modules/.bin/esbuild");
-    const [, words] = /^esbuild (.*)$/m.exec(await readFile(join(ROOT, "docs/browser.md"), "utf8"));
-    const bundle = () => execFileSync(esbuild, words.split(" "), { cwd: folder, stdio: "pipe" });
-    const html = '<body><script type="module" src="/page.js"></script>';
-    await writeFile(join(folder, "page.js"), code);
-    bundle();
-    await served(join(folder, "public"), html, /^planes$/);
-    await writeFile(join(folder, "page.js"), code.replace(/^.*\.wasm";\n/m, "").replace("load(wasm)", "load()"));
-    bundle();
-    await served(join(folder, "public"), html, /depthplanes\.wasm: 404.*import wasm from "depthplanes\/depthplanes\.wasm".*--loader:\.wasm=file/);
 }));
