@@ -29,6 +29,7 @@ async function makePackage(to) {
     await writeFile(join(to, "package.json"), `${JSON.stringify(about, null, 2)}\n`);
     for (const name of ["README.md", "LICENSE-APACHE", "LICENSE-MIT"]) await cp(name, join(to, name));
     await cp(wasm, join(to, "depthplanes.wasm"));
+    await cp("js/wasm.d.ts", join(to, "wasm.d.ts"));
     await cp(licences, join(to, "THIRD-PARTY"));
 }
 

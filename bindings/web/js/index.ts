@@ -12,7 +12,8 @@
 import { InputError, Module, type MapOf, type Request, type Wasm } from "./module.js";
 import type { DetectorOptions, Reading, Search } from "./options.js";
 import type { Explanation, Plane, PlanesRecord } from "./results.js";
-import type { Method, Row, Tables } from "./tables.js";
+import type { Extension, Method, OutputName, Row, Tables } from "./tables.js";
+import { inOptions } from "./words.js";
 
 export { InputError, type Wasm };
 export type * from "./options.js";
@@ -61,7 +62,7 @@ export class Frame {
         this.metres_per_unit = read.metres_per_unit;
         this.camera = read.camera;
         this.missing = read.missing;
-        this.notes = read.notes;
+        this.notes = read.notes.map(inOptions);
     }
 }
 
@@ -76,7 +77,7 @@ export class Planes {
     readonly curved?: Uint16Array;
     /** Milliseconds of each stage, by its name, reading first. */
     readonly stages: Record<string, number>;
-    /** What a person should know of the map and of the result. */
+    /** What a person should know of the map and of the result; `record.warnings` in the words of this package. */
     readonly notes: string[];
     /** The whole document. */
     readonly record: PlanesRecord;
@@ -95,7 +96,7 @@ export class Planes {
         this.curved = found.curved;
         this.planes = this.record.planes;
         this.stages = Object.fromEntries(found.stages);
-        this.notes = this.record.warnings;
+        this.notes = this.record.warnings.map(inOptions);
         [this.#module, this.#request, this.#bytes] = [module, request, bytes];
     }
 
@@ -107,6 +108,7 @@ export class Planes {
     explain(u: number, v: number): Explanation {
         for (const [name, given] of Object.entries({ u, v })) whole(name, given, 0);
         const { arrays, ...explanation } = this.#module.ask({ ask: { explain: [u, v] }, ...this.#request }, this.#bytes);
+        explanation.verdict.text = inOptions(explanation.verdict.text);
         return explanation as Explanation;
     }
 
@@ -116,7 +118,7 @@ export class Planes {
      *
      * @throws {InputError} for an output or an extension that there is not, or that needs a camera.
      */
-    encode(output: string, extension: string): Uint8Array {
+    encode(output: OutputName, extension: Extension): Uint8Array {
         return this.#module.ask({ ask: { encode: [output, extension] }, ...this.#request }, this.#bytes).bytes;
     }
 }
@@ -164,7 +166,7 @@ export class Depthplanes {
     /** @internal */
     constructor(module: Module) {
         this.#module = module;
-        const { arrays, ...tables } = module.ask({ ask: "tables" });
+        const tables = tablesOf(module);
         this.#tables = tables;
         this.version = tables.version;
         this.Detector = class extends Detector {
@@ -211,6 +213,17 @@ export class Depthplanes {
  */
 export async function load(wasm: Wasm = new URL("depthplanes.wasm", import.meta.url)): Promise<Depthplanes> {
     return new Depthplanes(await Module.load(wasm));
+}
+
+/** The tables, with the names of options. */
+function tablesOf(module: Module): Tables {
+    const { arrays, ...tables } = module.ask({ ask: "tables" });
+    const rows: Row[] = [...tables.sensors, ...tables.units, ...tables.formats, ...tables.outputs];
+    for (const row of rows) row.about = inOptions(row.about);
+    for (const { parameters } of tables.methods as Method[]) {
+        for (const parameter of parameters) parameter.name = parameter.name.replaceAll("-", "_");
+    }
+    return tables;
 }
 
 /** The bytes of an array, a copy, and the name of their type in NumPy's words. */

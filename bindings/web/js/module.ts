@@ -1,6 +1,7 @@
 // The WebAssembly module: requests go in, responses come out, each a head of JSON with numbers behind it.
 
 import { decode } from "../../../crates/depthplanes-serve/page/src/message.js";
+import { inOptions } from "./words.js";
 
 /** Something was wrong with what was given; the message says what is accepted. */
 export class InputError extends Error {
@@ -49,7 +50,7 @@ export class Module {
     /** Asks; the answer's head with its arrays. */
     ask(request: Request, bytes: Uint8Array = NOTHING): any {
         const head = decode(this.exchange(request, bytes));
-        if (typeof head.error === "string") throw new InputError(head.error);
+        if (typeof head.error === "string") throw new InputError(inOptions(head.error));
         return head;
     }
 
@@ -102,6 +103,8 @@ async function compile(wasm: Wasm): Promise<WebAssembly.Module> {
 }
 
 async function bytesOf(response: Response): Promise<ArrayBuffer> {
-    if (!response.ok) throw new InputError(`${response.url}: ${response.status} ${response.statusText}; accepted: depthplanes.wasm`);
-    return response.arrayBuffer();
+    if (response.ok) return response.arrayBuffer();
+    throw new InputError(`${response.url}: ${response.status} ${response.statusText}; accepted: the address of depthplanes.wasm, which `
+        + "lies in the package. A bundler that does not copy it, such as esbuild, gives it by "
+        + "`import wasm from \"depthplanes/depthplanes.wasm\"` with --loader:.wasm=file, for load(wasm)");
 }

@@ -1,5 +1,7 @@
 // What is stated of maps, and of how planes are looked for. The names are the program's, with `_` for `-`.
 
+import type { MethodName } from "./tables.js";
+
 /** What is stated of a map beside its numbers. */
 export interface Reading {
     /** A known sensor, such as `"kinect1"`: its unit, its nominal camera and its noise. `sensors()` lists them. */
@@ -51,15 +53,13 @@ export type ParameterName =
     | "overlooked" | "passes" | "radius" | "reach" | "seed" | "smooth_noise" | "smooth_noise_growth" | "spacing" | "theta"
     | "theta_gradient" | "votes" | "window";
 
-type Dashed<Name extends string> = Name extends `${infer Head}_${infer Rest}` ? `${Head}-${Dashed<Rest>}` : Name;
-
-/** Parameters of the method; `min_pixels` is the same as `"min-pixels"`. */
-export type Parameters = { [Name in ParameterName | Dashed<ParameterName>]?: number };
+/** Parameters of the method. */
+export type Parameters = { [Name in ParameterName]?: number };
 
 /** How planes are looked for. */
 export interface Search extends Parameters {
     /** `"planar"`, which needs no parameter, or another of `methods()`. */
-    method?: string;
+    method?: MethodName;
     /** Whether curved surfaces are wanted as well. */
     curved?: boolean;
     /** Degrees and metres within which pieces of one plane are joined. */

@@ -22,15 +22,33 @@ export interface Parameter {
     accepted: string;
 }
 
+/** Names of the methods; the first is the default. */
+export type MethodName = "planar" | "ngaf" | "ransac" | "ppdfdm" | "fpdidm" | "hough" | "normals" | "mdl" | "gradient";
+
 /** A method with its parameters. */
 export interface Method extends Row {
+    name: MethodName;
+    /** Whether it tells curved surfaces from planes. */
+    curved: boolean;
     stages: string[];
     parameters: Parameter[];
 }
 
-/** A format or an output, with the ends of its files' names. */
+/** A format, with the ends of its files' names. */
 export interface FileRow extends Row {
     extensions: string[];
+}
+
+/** What there is of planes to write. */
+export type OutputName = "labels" | "overlay" | "planes" | "cloud" | "mesh" | "curved-labels";
+
+/** In which forms it can be written: the ends of files' names. */
+export type Extension = "png" | "npy" | "json" | "csv" | "geojson" | "coco.json" | "ply";
+
+/** An output, with its forms. */
+export interface Output extends Row {
+    name: OutputName;
+    extensions: Extension[];
 }
 
 /** All tables. */
@@ -40,7 +58,7 @@ export interface Tables {
     sensors: Row[];
     units: Row[];
     formats: FileRow[];
-    outputs: FileRow[];
+    outputs: Output[];
     scenes: Row[];
     scene_sensors: Row[];
 }

@@ -1,6 +1,16 @@
 // Asks the thread that finds planes.
 
 import { decode } from "../../../crates/depthplanes-serve/page/src/message.js";
+import { inFields } from "../js/words.ts";
+
+/** What the program says, in words of the page. */
+function inWordsOfThePage(head) {
+    if (head.error) head.error = inFields(head.error);
+    if (head.notes) head.notes = head.notes.map(inFields);
+    if (head.verdict) head.verdict.text = inFields(head.verdict.text);
+    for (const row of [head.units, head.outputs].flat()) if (row) row.about = inFields(row.about);
+    return head;
+}
 
 /** Starts it from the text of its script. */
 export class Client {
@@ -11,7 +21,7 @@ export class Client {
         this.worker.onmessage = ({ data: { number, answer, error } }) => {
             const { resolve, reject } = this.waiting.get(number);
             this.waiting.delete(number);
-            const head = answer && decode(answer);
+            const head = answer && inWordsOfThePage(decode(answer));
             error || head.error ? reject(new Error(error ?? head.error)) : resolve(head);
         };
         this.worker.onerror = event => this.stop(event.message || "the browser did not start it");

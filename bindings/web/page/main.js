@@ -10,18 +10,22 @@ import { Choices } from "./choices.js";
 import { Client } from "./client.js";
 import { offer } from "./downloads.js";
 import { keys } from "./keys.js";
+import { sorted } from "./opened.js";
+import { arrange } from "./layout.js";
 
 const FIRST = "room:sensor=kinect";
 const MOST_BYTES = 2 ** 30;
 /** A picked pixel without a plane is explained anew when nothing else has changed for so long. */
 const EXPLAIN_AGAIN_MS = 300;
-const NOTHING = { map: { scene: FIRST }, bytes: undefined, reading: {}, method: "planar", parameters: {} };
+const NOTHING = { map: { scene: FIRST }, bytes: undefined, reading: {}, carried: [], method: "planar", parameters: {}, curved: false };
 
 const find = id => document.getElementById(id);
+const main = document.querySelector("main");
 /* global WORKER: the text of the worker's script */
 const client = new Client(WORKER);
-/** What is shown: `state` made `frame`; `due` is being found, `wanted` comes next. */
-const page = { tables: null, state: NOTHING, due: null, wanted: null, isBusy: false, frame: null, serial: 0, cameras: 0, chosen: null };
+/** What is shown: `state` made `frame`; `due` is being found, `wanted` comes next, and `refused` is a map, or what was stated of one,
+ * that waits until that is mended. */
+const page = { tables: null, state: NOTHING, due: null, wanted: null, refused: null, isBusy: false, frame: null, serial: 0, cameras: 0, chosen: null };
 
 const view2d = new View2d(find("view2d"), at => look(at));
 const view3d = new View3d(find("view3d"), "state them under “Map and method”");
@@ -29,26 +33,46 @@ const pick = new Pick(find("pixel"), choose, ask);
 const setParameter = (name, value) => want(({ parameters }) => ({ parameters: { ...parameters, [name]: value } }));
 const sliders = new Sliders(find("parameters"), setParameter, () => want({ parameters: {} }));
 const stages = new Stages(find("stages"), find("total"));
-const choices = new Choices(find("choices"), want, banner);
+const choices = new Choices(find("choices"), { want, wantMap, giveUp, check, fail: banner });
 globalThis.depthplanes = Object.assign(page, { view2d, view3d, client }); // for the browser's console, and for tests
 
-/** What is stated of a map; the size of files without a header is not that of others. */
-function stated({ file }, { raw_size, ...others }) {
+/** What is stated of a map; size and type of files without a header are not those of others. */
+function stated({ file }, { raw_size, raw_type, ...others }) {
     const { extensions } = page.tables.formats.find(({ name }) => name === "raw");
     const isRaw = extensions.some(end => file?.toLowerCase().endsWith(`.${end}`));
-    return isRaw ? { raw_size, ...others } : others;
+    return isRaw ? { raw_size, raw_type, ...others } : others;
 }
 
 /** The request of what is wanted. */
-function request(ask, { map, reading, method, parameters }) {
-    return { ask, map, words: { ...stated(map, reading), ...(ask === "camera" ? {} : { method, ...parameters }) } };
+function request(ask, { map, reading, method, parameters, curved }) {
+    const isCurved = curved && choices.curvedMethods.has(method);
+    return { ask, map, words: { ...stated(map, reading), ...(ask === "camera" ? {} : { method, curved: isCurved, ...parameters }) } };
 }
 
-/** Shows something else: changes of what was wished last, or a function that makes them of it. While it is found only the newest wish waits. */
+const changed = (state, change) => ({ ...state, ...(typeof change === "function" ? change(state) : change) });
+
+/** Looks for planes in another way: changes of what was wished last, or a function that makes them of it. */
 function want(change) {
-    const last = page.wanted ?? page.due ?? page.state;
-    page.wanted = { ...last, ...(typeof change === "function" ? change(last) : change) };
+    if (page.refused) page.refused = changed(page.refused, change);
+    next(changed(page.wanted ?? page.due ?? page.state, change));
+}
+
+/** Shows another map, or reads it otherwise: one that was refused, if there is one. */
+function wantMap(change) {
+    next(changed(page.wanted ?? page.due ?? page.refused ?? page.state, change));
+}
+
+/** While something is found only the newest wish waits. */
+function next(wanted) {
+    page.wanted = wanted;
     if (!page.isBusy) work();
+}
+
+/** What was refused is not wanted any more. */
+function giveUp() {
+    page.refused = null;
+    banner(null);
+    showState();
 }
 
 async function work() {
@@ -59,10 +83,11 @@ async function work() {
         page.wanted = null;
         try {
             await show(wanted);
-            banner(null);
+            banner(page.refused?.why);
         } catch (error) {
             banner(error.message);
-            if (!page.wanted) showState(); // controls go back
+            if (isOther(wanted)) page.refused = { ...wanted, why: error.message };
+            if (!page.wanted) showState(); // controls of the method go back
         }
     }
     find("speed").classList.remove("busy");
@@ -70,27 +95,33 @@ async function work() {
     page.isBusy = false;
 }
 
+/** Whether it is about another map than the one that is shown, or states something else of it. */
+const isOther = ({ map, reading }) => map !== page.state.map || reading !== page.state.reading;
+
 async function show(wanted) {
     const frame = await client.ask(request("show", wanted), wanted.bytes);
     const { state } = page;
-    const isOther = wanted.map !== state.map || !page.frame;
-    if (isOther || wanted.reading !== state.reading) {
+    const isOtherMap = wanted.map !== state.map || !page.frame;
+    if (isOtherMap || isOther(wanted)) {
+        page.refused = null;
         const camera = await client.ask(request("camera", wanted), wanted.bytes);
         page.camera = camera.rays ? camera : null;
         page.cameras++;
         if (page.camera) view3d.setCamera(camera);
     }
-    if (isOther) page.chosen = view2d.chosen = view3d.chosen = view2d.at = null;
-    page.state = wanted;
+    if (isOtherMap) page.chosen = view2d.chosen = view3d.chosen = view2d.at = null;
+    const { why, ...shown } = wanted; // which may have been refused before
+    page.state = shown;
     frame.serial = ++page.serial;
     frame.camera = page.camera ? page.cameras : null;
-    if (isOther) pick.clear();
-    draw(frame, isOther);
+    if (isOtherMap) pick.clear();
+    draw(frame, isOtherMap);
 }
 
-function draw(frame, isOther) {
+function draw(frame, isOtherMap) {
     page.frame = frame;
-    if (isOther) view3d.hasLooked = false;
+    arrange(main, frame.map);
+    if (isOtherMap) view3d.hasLooked = false;
     view2d.show(frame, true); // nothing moves here from frame to frame
     view3d.show(frame, true);
     stages.means.clear();
@@ -108,7 +139,9 @@ function showState() {
     const { parameters } = tables.methods.find(({ name }) => name === state.method);
     if (sliders.of !== parameters) sliders.make(sliders.of = parameters);
     sliders.show(parameters.map(({ name, default: usual }) => state.parameters[name] ?? usual));
-    choices.show(state);
+    const { map, reading, carried, ...others } = page.refused ?? state;
+    const inUse = Object.keys(stated(map, reading));
+    choices.show({ map, reading, carried: carried.filter(name => inUse.includes(name)), ...others }, Boolean(page.refused));
 }
 
 function showPanels() {
@@ -124,10 +157,11 @@ function showPanels() {
         choose(id === page.chosen ? null : id);
     });
     showGround(find("ground"), frame);
-    stages.show();
+    choices.showInUse(frame, state);
     const { stages: of } = tables.methods.find(({ name }) => name === state.method);
-    const ms = frame.stages.filter(([name]) => of.includes(name)).reduce((sum, [, ms]) => sum + ms, 0);
+    const ms = stages.show(of);
     find("speed").textContent = `${frame.planes.length} planes in ${ms.toFixed(1)} ms`;
+    find("speed").title = `What ${state.method} took; the list under “Time” has what was done before and after it as well`;
     pick.show(frame);
     find("notes-panel").hidden = frame.notes.length === 0;
     find("note-count").textContent = frame.notes.length;
@@ -154,7 +188,10 @@ async function ask(type, { at, name, value } = {}) {
     if (type === "set") setParameter(name, value);
     if (type !== "explain") return;
     try {
-        pick.answer(await client.ask(request({ explain: at }, page.state), page.state.bytes));
+        const why = await client.ask(request({ explain: at }, page.state), page.state.bytes);
+        const isHidden = why.verdict.kind === "curved" && !page.state.curved;
+        const remedies = isHidden ? [{ text: "Show curved surfaces", act: () => want({ curved: true }) }] : [];
+        pick.answer({ ...why, remedies });
     } catch (error) {
         pick.answer({ at, error: error.message });
     }
@@ -166,9 +203,25 @@ function banner(text) {
     find("banner-text").textContent = text ?? "";
 }
 
-async function open(file) {
-    const bytes = new Uint8Array(await file.arrayBuffer());
-    want({ map: { file: file.name }, bytes });
+/** Fails unless the text of a camera file states a camera. */
+function check(camera) {
+    return client.ask({ ask: "check", words: { camera } });
+}
+
+/** Reads a map, a camera file, or both. */
+async function open(...files) {
+    const { map, camera } = await sorted(files, page.tables.formats, check);
+    const own = camera && await choices.cameraOf(camera);
+    if (!map) return choices.read(own);
+    openMap({ map: { file: map.name }, bytes: new Uint8Array(await map.arrayBuffer()) }, own);
+}
+
+/** Shows another map. What was stated for the one before counts for it as well, and is marked; `own` is stated for itself. */
+function openMap(map, own = {}) {
+    wantMap(({ reading }) => {
+        const carried = Object.keys(reading).filter(name => reading[name] !== undefined && !(name in own));
+        return { ...map, reading: { ...reading, ...own }, carried };
+    });
 }
 
 function setMode(mode) {
@@ -196,8 +249,13 @@ for (const [name, view] of [["outlines", view2d], ["ids", view2d], ["floor", vie
 find("banner-close").onclick = () => banner(null);
 find("view-reset").onclick = () => view3d.reset();
 find("licences").onclick = () => find("licence-text").showModal();
-find("sample").onchange = ({ target }) => target.value && want({ map: { scene: target.value }, bytes: undefined });
-new Drop({ zone: find("drop"), button: find("open"), input: find("file") }, () => MOST_BYTES, banner, open);
+find("sample").onchange = ({ target }) => target.value && openMap({ map: { scene: target.value }, bytes: undefined });
+new Drop({ zone: find("drop"), button: find("open"), input: find("file") }, () => MOST_BYTES, banner, open, 2);
+new ResizeObserver(() => {
+    if (!page.frame) return;
+    arrange(main, page.frame.map);
+    showPanels();
+}).observe(main);
 keys({ page, look, modes: { 1: "planes", 2: "depth", 3: "ground" }, setMode, buttons: { o: find("open"), r: find("view-reset") } });
 
 /** The page begins with a sample, so that there is something to see. */

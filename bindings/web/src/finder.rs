@@ -1,6 +1,7 @@
 //! How planes are looked for: words of JavaScript as a detector, with its memory.
 
 use crate::error::{InputError, Result, check_memory};
+use crate::options;
 use crate::reading::{Words, take};
 use depthplanes::methods::{self, MethodInfo};
 use depthplanes::{Coplanar, Detection, Detector, Error};
@@ -91,19 +92,14 @@ impl Finder {
 
 /// A value for each parameter of a method.
 fn values(method: &'static MethodInfo, given: &Words) -> Result<Vec<f64>> {
-    let mut named = Vec::new();
-    for (name, value) in given.iter().filter(|(_, value)| !value.is_null()) {
-        let name = name.replace('_', "-");
-        let value = value.as_f64().ok_or_else(|| InputError(format!("{name} is {value}; accepted: a number")));
-        named.push((name, value));
-    }
     let mut values = method.defaults();
-    for (name, value) in named {
-        // Of a name that is not known it is said so, whatever its value.
-        let at = method.position(&name);
-        let value = if at.is_some() { value? } else { 0.0 };
+    for (option, value) in given.iter().filter(|(_, value)| !value.is_null()) {
+        let name = option.replace('_', "-");
+        let at = method.position(&name).ok_or_else(|| options::unknown_of_detector(option, method))?;
+        let refused = || InputError(format!("{} is {value}; accepted: a number", options::of_parameter(option)));
+        let value = value.as_f64().ok_or_else(refused)?;
         drop(method.with(&[(name.as_str(), value)])?);
-        values[at.expect("it was accepted")] = value;
+        values[at] = value;
     }
     Ok(values)
 }

@@ -1,9 +1,11 @@
 //! The map that a request is about.
 
 use crate::error::{Result, check_memory};
+use depthplanes::ValueKind;
 use depthplanes::scene::Spec;
 use depthplanes_io::{Frame, ReadOptions, frame_of_samples};
 use serde::Deserialize;
+use serde_json::{Value, json};
 
 /// What the bytes of a request are.
 #[derive(Debug, Deserialize, PartialEq)]
@@ -24,6 +26,14 @@ impl MapOf {
             MapOf::File(name) => name.clone(),
             MapOf::Array { .. } => "array".into(),
             MapOf::Scene(spec) => format!("scene:{spec}"),
+        }
+    }
+
+    /// What making a frame of it is called in the list of times.
+    pub(crate) fn stage(&self) -> &'static str {
+        match self {
+            MapOf::File(_) | MapOf::Array { .. } => "read",
+            MapOf::Scene(_) => "scene",
         }
     }
 
@@ -55,4 +65,19 @@ impl MapOf {
             }
         }
     }
+}
+
+/// What is known of the numbers of a frame and of its camera.
+pub(crate) fn known(frame: &Frame) -> Value {
+    let metres_per_unit = match frame.sensor.value_kind {
+        ValueKind::Depth { metres } => Some(metres),
+        _ => None,
+    };
+    json!({
+        "unit": frame.encoding,
+        "why_unit": frame.provenance.encoding,
+        "metres_per_unit": metres_per_unit,
+        "camera": frame.sensor.intrinsics.map(|camera| [camera.fx, camera.fy, camera.cx, camera.cy]),
+        "missing": frame.missing,
+    })
 }

@@ -1,6 +1,7 @@
 //! What is stated of a map beside its numbers: words of JavaScript as the readers take them.
 
 use crate::error::{InputError, Result};
+use crate::options;
 use depthplanes::Intrinsics;
 use depthplanes::noise::{NoiseTable, SensorNoise};
 use depthplanes_io::ReadOptions;
@@ -77,10 +78,7 @@ pub(crate) fn reading(words: &mut Words) -> Result<ReadOptions> {
 /// # Errors
 /// With the first of them.
 pub(crate) fn refuse_others(left: &Words) -> Result<()> {
-    let Some(name) = left.keys().next() else { return Ok(()) };
-    let accepted = "sensor, unit, camera, camera_size, rectified, scale, depth_scale, ray_distance, disparity, focal, baseline, \
-                    doffs, missing, valid_range, noise_table, swap_bytes, member, raw_size, raw_type";
-    Err(InputError(format!("`{name}` says nothing of how a map is read; accepted: {accepted}")))
+    left.keys().next().map_or(Ok(()), |name| Err(options::unknown_of_reading(name)))
 }
 
 /// The camera of four numbers.

@@ -3,11 +3,10 @@
 use crate::clock::Clock;
 use crate::error::{InputError, Result};
 use crate::finder::Finder;
-use crate::map::MapOf;
+use crate::map::{MapOf, known};
 use crate::reading::{Words, reading, refuse_others};
 use crate::shown::View;
 use crate::tables::tables;
-use depthplanes::ValueKind;
 use depthplanes_io::outputs::{OUTPUTS, json_line};
 use depthplanes_io::page::{Message, camera_message};
 use depthplanes_io::{Frame, Pixels, ReadOptions};
@@ -53,13 +52,13 @@ enum Ask {
 pub(crate) struct Session {
     request: Vec<u8>,
     response: Vec<u8>,
-    known: Option<Known>,
+    last: Option<Last>,
     finder: Option<Finder>,
     view: View,
 }
 
 /// The last map.
-struct Known {
+struct Last {
     map: MapOf,
     options: ReadOptions,
     bytes: Vec<u8>,
@@ -106,8 +105,9 @@ impl Session {
         };
         let Some(map) = request.map else { return Ok(Message::default()) };
         let name = map.name();
-        let frame = known(&mut self.known, map, options, bytes)?;
-        clock.ends("read");
+        let stage = map.stage();
+        let frame = frame_of(&mut self.last, map, options, bytes)?;
+        clock.ends(stage);
         match request.ask {
             Ask::Tables | Ask::Check => Ok(Message::default()),
             Ask::Read => Ok(read(frame)),
@@ -144,31 +144,22 @@ fn parts(request: &[u8]) -> Result<(&[u8], &[u8])> {
 }
 
 /// The frame of a map: the last one, if it is the same.
-fn known<'a>(known: &'a mut Option<Known>, map: MapOf, options: ReadOptions, bytes: &[u8]) -> Result<&'a Frame> {
-    let is_same = |last: &Known| last.map == map && last.options == options && last.bytes == bytes;
-    if !known.as_ref().is_some_and(is_same) {
-        *known = None; // its memory may be needed
+fn frame_of<'a>(last: &'a mut Option<Last>, map: MapOf, options: ReadOptions, bytes: &[u8]) -> Result<&'a Frame> {
+    let is_same = |last: &Last| last.map == map && last.options == options && last.bytes == bytes;
+    if !last.as_ref().is_some_and(is_same) {
+        *last = None; // its memory may be needed
         let frame = map.frame(bytes, &options)?;
-        *known = Some(Known { map, options, bytes: bytes.to_vec(), frame });
+        *last = Some(Last { map, options, bytes: bytes.to_vec(), frame });
     }
-    Ok(&known.as_ref().expect("it was just read").frame)
+    Ok(&last.as_ref().expect("it was just read").frame)
 }
 
 /// What was read.
 fn read(frame: &Frame) -> Message {
-    let camera = frame.sensor.intrinsics.map(|camera| [camera.fx, camera.fy, camera.cx, camera.cy]);
-    let metres_per_unit = match frame.sensor.value_kind {
-        ValueKind::Depth { metres } => Some(metres),
-        _ => None,
-    };
-    let mut message = Message::new(json!({
+    let mut message = Message::new(known(frame)).with(json!({
         "width": frame.width,
         "height": frame.height,
         "format": frame.format,
-        "unit": frame.encoding,
-        "metres_per_unit": metres_per_unit,
-        "camera": camera,
-        "missing": frame.missing,
         "notes": frame.warnings,
     }));
     match &frame.pixels {

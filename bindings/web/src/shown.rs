@@ -3,6 +3,7 @@
 use crate::clock::Clock;
 use crate::error::{InputError, Result};
 use crate::finder::Finder;
+use crate::map::known;
 use depthplanes::ground::GroundFinder;
 use depthplanes::outline::Outliner;
 use depthplanes_io::Frame;
@@ -50,6 +51,6 @@ impl View {
         clock.ends("outlines");
         let message = frame_message(&Shown { frame, detection, outlines, tracks: None, ground })?;
         clock.ends("message");
-        Ok(message.with(json!({"name": name, "notes": notes, "stages": clock.stages})))
+        Ok(message.with(json!({"name": name, "notes": notes, "stages": clock.stages, "known": known(frame)})))
     }
 }

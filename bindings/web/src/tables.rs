@@ -34,6 +34,7 @@ fn method(method: &MethodInfo) -> Value {
     json!({
         "name": method.name,
         "about": method.about,
+        "curved": method.tells_curved,
         "stages": method.stages,
         "parameters": method.params.iter().map(parameter_record).collect::<Vec<_>>(),
     })

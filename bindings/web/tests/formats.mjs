@@ -121,6 +121,27 @@ function bmp({ depth, width, height }) {
     return file;
 }
 
+/** OpenEXR of one float channel, not packed: attributes, where each row starts, and the rows. */
+function exr(map) {
+    const { width, height } = map;
+    const attribute = (name, type, value) => Buffer.concat([Buffer.from(`${name}\0${type}\0`), words(value.length), value]);
+    const channel = Buffer.concat([Buffer.from("Z\0"), words(2), Buffer.from([1, 0, 0, 0]), words(1, 1), Buffer.from([0])]);
+    const window = words(0, 0, width - 1, height - 1);
+    const head = Buffer.concat([
+        Buffer.from("\x76\x2f\x31\x01\x02\x00\x00\x00", "latin1"),
+        attribute("channels", "chlist", channel), attribute("compression", "compression", Buffer.from([0])),
+        attribute("dataWindow", "box2i", window), attribute("displayWindow", "box2i", window),
+        attribute("lineOrder", "lineOrder", Buffer.from([0])), attribute("pixelAspectRatio", "float", bytes([1], Float32Array)),
+        attribute("screenWindowCenter", "v2f", bytes([0, 0], Float32Array)), attribute("screenWindowWidth", "float", bytes([1], Float32Array)),
+        Buffer.from([0]),
+    ]);
+    const values = metres(map);
+    const row = 8 + 4 * width;
+    const places = Array.from({ length: height }, (_, at) => BigInt(head.length + 8 * height + row * at));
+    const rows = places.map((_, at) => Buffer.concat([words(at, 4 * width), bytes(values.subarray(at * width, (at + 1) * width), Float32Array)]));
+    return Buffer.concat([head, bytes(places, BigUint64Array), ...rows]);
+}
+
 /** The writers by the name of the format in the library's table: the ending of the file, and its bytes, of a map and its PNG. */
 export const WRITERS = {
     "png": ["png", (map, png) => png],
@@ -134,5 +155,6 @@ export const WRITERS = {
     "pcd": ["pcd", pcd],
     "pclzf": ["pclzf", pclzf],
     "rvl": ["rvl", rvl],
+    "exr": ["exr", exr],
     "raw": ["raw", u16],
 };

@@ -2,7 +2,8 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { cp, readFile, writeFile } from "node:fs/promises";
+import { cp, readFile, readdir, writeFile } from "node:fs/promises";
+import { createRequire } from "node:module";
 import { join } from "node:path";
 import { test } from "node:test";
 import { WRITERS } from "./formats.mjs";
@@ -10,6 +11,8 @@ import { BUILT, assertDocument, dp, labelsOf, native, program, recorded, skip, v
 
 const ROOT = join(import.meta.dirname, "../../..");
 const CAMERA = [580, 580, 319.5, 239.5];
+const STRICT = ["--noEmit", "--strict", "--target", "es2022", "--module", "es2022", "--moduleResolution", "bundler", "--lib", "es2022,dom", "--types", ""];
+const { build } = createRequire(join(ROOT, "crates/depthplanes-serve/page/build.mjs"))("esbuild");
 
 for (const method of ["planar", "ngaf", "ransac"]) {
     test(`${method}: labels of recorded maps are those of the program`, { skip }, () => withFolder(async folder => {
@@ -84,21 +87,22 @@ test("no answer depends on the one before, nor on what is written to the array s
     assert.equal(first.explain(320, 400).verdict.kind, "plane");
 });
 
-test("what is wrong is said in the program's words", () => withFolder(async folder => {
+test("what is wrong is said in the names of options", () => withFolder(async folder => {
     const flat = new Uint16Array(64 * 48).fill(1000);
     const detector = new dp.Detector();
     const refused = (act, words) => assert.throws(act, error => {
         assert.equal(error.name, "InputError");
         assert.match(error.message, words);
+        assert.doesNotMatch(error.message, /--|cargo|`depthplanes /);
         return true;
     });
     refused(() => new dp.Detector({ method: "plane" }), /no method `plane`; there are: planar, ngaf/);
     refused(() => new dp.Detector({ sensor: "kinect9" }), /kinect9.*kinect1/);
     refused(() => new dp.Detector({ unit: "miles" }), /miles.*millimetre/);
-    refused(() => new dp.Detector({ min_pixels: -5 }), /min-pixels.*-5.*a whole number from/);
-    refused(() => new dp.Detector({ min_pixels: "many" }), /min-pixels is "many"; accepted: a number/);
+    refused(() => new dp.Detector({ min_pixels: -5 }), /`min_pixels`.*-5.*a whole number from/);
+    refused(() => new dp.Detector({ min_pixels: "many" }), /min_pixels is "many"; accepted: a number/);
     refused(() => new dp.Detector({ min_pixels: NaN }), /min_pixels is NaN; accepted: a finite number/);
-    refused(() => new dp.Detector({ theta: 1 }), /`theta`.*min-pixels/);
+    refused(() => new dp.Detector({ theta: 1 }), /no option `theta`; the method `planar` has no such parameter, ngaf has; accepted: .*min_pixels/);
     refused(() => new dp.Detector({ camera: [580, 580] }), /camera is \[580,580\]; accepted: \[fx, fy, cx, cy\]/);
     refused(() => new dp.Detector({ camera: "no camera" }), /camera/);
     refused(() => new dp.Detector({ method: "ngaf", curved: true }), /curved.*planar/);
@@ -107,9 +111,14 @@ test("what is wrong is said in the program's words", () => withFolder(async fold
     refused(() => detector.detect(flat, 64, 47), /the array has 3072 numbers; accepted: 64 x 47 = 3008/);
     refused(() => detector.detect(flat, 64), /height is undefined; accepted: a whole number/);
     refused(() => detector.detect(flat, 64, 48).explain(64, 0), /pixel 64,0 is outside of the map/);
-    refused(() => detector.detect(flat, 64, 48).encode("cloud", "ply"), /intrinsics/);
+    refused(() => new dp.Detector({ cam: [1, 2] }), /no option `cam`; did you mean `camera`\?; accepted: .*camera_size.*merge_coplanar.*min_pixels/);
+    refused(() => new dp.Detector({ minPixels: 9 }), /did you mean `min_pixels`\?/);
+    refused(() => new dp.Detector({ colour: "red" }), /no option `colour`; accepted/);
+    refused(() => detector.detect(flat, 64, 48).encode("cloud", "ply"), /give `camera` or `sensor`/);
+    refused(() => dp.read(new Uint8Array(6), "map.raw"), /state the size with `raw_size`$/);
+    refused(() => new dp.Detector({ unit: "disparity", baseline: 0.1 }), /`focal` \(or `camera`\)/);
     refused(() => detector.detect(flat, 64, 48).encode("labels", "jpg"), /png or .npy/);
-    refused(() => dp.read(new Uint8Array(10), "map.png", { sensr: "kinect1" }), /`sensr` says nothing.*sensor/);
+    refused(() => dp.read(new Uint8Array(10), "map.png", { sensr: "kinect1" }), /no option `sensr`; did you mean `sensor`\?; accepted: sensor, unit, camera, /);
     refused(() => new dp.Detector({ unit: "mm" }).detect(dp.scene("room:size=64x48")), /read already/);
     refused(() => dp.scene("ballroom"), /ballroom.*room/);
     for (const [name, text] of [["letter.txt", "Dear Sir"], ["cut.png", "\x89PNG\r\n\x1a\n"], ["photo.jpg", "\xff\xd8\xff\xe0"]]) {
@@ -118,28 +127,90 @@ test("what is wrong is said in the program's words", () => withFolder(async fold
         let said;
         assert.throws(() => program(["detect", name], folder), error => (said = error.stderr, true));
         refused(() => dp.read(bytes, name), new RegExp(`^${name}: `));
-        assert.throws(() => dp.read(bytes, name), error => said.includes(error.message) || assert.fail(`${said} ${error.message}`));
+        const inOptions = said.replace(/--([a-z-]+)/g, (_, flag) => `\`${flag.replaceAll("-", "_").replace("intrinsics", "camera")}\``);
+        assert.throws(() => dp.read(bytes, name), error => inOptions.includes(error.message) || assert.fail(`${said} ${error.message}`));
     }
 }));
 
-test("parameters are those of the tables, and have types", async () => {
+/** The names of a union of literals in a file of types. */
+async function union(file, name) {
+    const types = await readFile(join(BUILT, "package", file), "utf8");
+    const [, names] = new RegExp(`type ${name} = ([^;]*);`).exec(types);
+    return [...names.matchAll(/"([\w.-]+)"/g)].map(([, name]) => name).sort();
+}
+
+/** The options that an interface in the types of options has. */
+async function optionsOf(name) {
     const types = await readFile(join(BUILT, "package/options.d.ts"), "utf8");
-    const [, union] = /type ParameterName = ([^;]*);/.exec(types);
-    const named = [...union.matchAll(/"(\w+)"/g)].map(([, name]) => name);
-    const known = new Set(dp.methods().flatMap(({ parameters }) => parameters.map(({ name }) => name.replaceAll("-", "_"))));
-    assert.deepEqual(named.sort(), [...known].sort());
+    const [, body] = new RegExp(`interface ${name}[^{]*{([^}]*)}`).exec(types);
+    return [...body.matchAll(/^    (\w+)\?:/gm)].map(([, option]) => option);
+}
+
+test("names of options, methods and outputs are those of the tables, and have types", async () => {
+    const parameters = dp.methods().flatMap(({ parameters }) => parameters.map(({ name }) => name));
+    assert.deepEqual(await union("options.d.ts", "ParameterName"), [...new Set(parameters)].sort());
+    assert.deepEqual(await union("tables.d.ts", "MethodName"), dp.methods().map(({ name }) => name).sort());
+    const { outputs } = dp.tables();
+    assert.deepEqual(await union("tables.d.ts", "OutputName"), outputs.map(({ name }) => name).sort());
+    assert.deepEqual(await union("tables.d.ts", "Extension"), [...new Set(outputs.flatMap(({ extensions }) => extensions))].sort());
+    const own = dp.methods()[0].parameters.map(({ name }) => name);
+    const options = [...await optionsOf("Reading"), ...await optionsOf("Search"), ...own].sort();
+    assert.throws(() => new dp.Detector({ nothing: 1 }), ({ message }) => {
+        assert.deepEqual(message.split("accepted: ")[1].split(", ").sort(), options);
+        return true;
+    });
     for (const { name, parameters } of dp.methods()) {
         const values = Object.fromEntries(parameters.map(({ name, default: usual }) => [name, usual]));
         const { record } = new dp.Detector({ method: name, ...values }).detect(new Uint16Array(64).fill(9), 8, 8);
-        assert.deepEqual(record.parameters, values);
+        const written = Object.fromEntries(Object.entries(record.parameters).map(([name, value]) => [name.replaceAll("-", "_"), value]));
+        assert.deepEqual(written, values);
+        // As the document has them.
+        assert.deepEqual(new dp.Detector({ method: name, ...record.parameters }).detect(new Uint16Array(64).fill(9), 8, 8).record.parameters, record.parameters);
     }
 });
+
+test("each flag that a message of the readers names is an option", async () => {
+    const { outputFiles } = await build({ entryPoints: [join(ROOT, "bindings/web/js/words.ts")], bundle: true, format: "esm", write: false });
+    const { inOptions, inFields } = await import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].text).toString("base64")}`);
+    const options = new Set([...await optionsOf("Reading"), ...await optionsOf("Search")]);
+    const sources = join(ROOT, "crates/depthplanes-io/src");
+    // Label images are not read here.
+    const names = (await readdir(sources, { recursive: true })).filter(name => name.endsWith(".rs") && name !== "labels.rs");
+    let seen = 0;
+    for (const name of [...names, "../../depthplanes/src/explanation.rs"]) {
+        const code = (await readFile(join(sources, name), "utf8")).split("#[cfg(test)]")[0]
+            .replace(/^\s*\/\/.*$|\.contains\("[^"]*"\)/gm, "");
+        for (const [flag] of code.matchAll(/--[a-z][a-z-]*\b(?!=no)/g)) {
+            if (flag === "--features") continue; // of how the program is built; such a phrase is left out
+            const [, option] = /^`(\w+)`$/.exec(inOptions(flag)) ?? assert.fail(`${name}: ${flag}`);
+            assert.ok(options.has(option), `${name}: ${flag}`);
+            seen++;
+        }
+    }
+    assert.ok(seen > 100, `${seen}`);
+    const says = (text, option, field) => assert.deepEqual([inOptions(text), inFields(text)], [option, field]);
+    says("state --encoding millimetre, or --raw-size", "state `unit` millimetre, or `raw_size`", "state “Unit” millimetre, or “Raw size”");
+    says("try --intrinsics=1,2,3,4; --rectified=no undoes it", "try `camera` 1,2,3,4; `rectified` false undoes it", "try “Camera” 1,2,3,4; “Rectified” false undoes it");
+    says("check --intrinsics, --camera and --camera-size", "check `camera` and `camera_size`", "check “Camera” and “Camera size”");
+    says("builds with the feature `x` (cargo install ... --features x)", "builds with the feature `x`", "builds with the feature `x`");
+});
+
+test("types refuse a method, an output and an option that there is not", () => withFolder(async folder => {
+    await writeFile(join(folder, "package.json"), "{}");
+    await cp(join(BUILT, "package"), join(folder, "node_modules/depthplanes"), { recursive: true });
+    const wrong = ['new dp.Detector({ method: "ngaff" })', 'new dp.Detector({ "min-pixels": 9 })', 'planes.encode("labelz", "png")', 'planes.encode("labels", "jpg")'];
+    const right = ['new dp.Detector({ method: "ngaf", min_pixels: 9 })', 'planes.encode("labels", "png")', "load(address)"];
+    const lines = [...wrong.map(line => `// @ts-expect-error\n${line};`), ...right.map(line => `${line};`)].join("\n");
+    await writeFile(join(folder, "calls.ts"), `import { load, type Depthplanes, type Planes } from "depthplanes";\nimport address from "depthplanes/depthplanes.wasm";\ndeclare const dp: Depthplanes, planes: Planes;\n${lines}\n`);
+    execFileSync(join(ROOT, "bindings/web/node_modules/.bin/tsc"), [...STRICT, "calls.ts"], { cwd: folder, stdio: "pipe" });
+}));
 
 // Maps of each format are compared on the page.
 test("tables are the program's", () => {
     for (const [command, rows] of [["presets", dp.sensors()], ["formats", dp.tables().formats], ["methods", dp.methods()], ["encodings", dp.tables().units]]) {
         const text = program([command]);
-        for (const { name, about } of rows) assert.ok(text.includes(name) && text.includes(about), name);
+        const said = about => about.replace(/`(\w+)`$/, (_, option) => `--${option.replaceAll("_", "-")}`);
+        for (const { name, about } of rows) assert.ok(text.includes(name) && (text.includes(about) || text.includes(said(about))), name);
         assert.equal(text.trim().split("\n").length, rows.length + 1, command);
     }
     assert.deepEqual(dp.tables().formats.map(({ name }) => name).sort(), Object.keys(WRITERS).sort());
@@ -174,8 +245,7 @@ for (const page of ["docs/browser.md", "bindings/web/README.md"]) {
         execFileSync(process.execPath, ["snippets.mjs"], { cwd: folder, stdio: "pipe" });
         await writeFile(join(folder, "node.d.ts"), "declare module 'node:fs/promises' { export function readFile(name: string): Promise<Uint8Array>; export function writeFile(name: string, bytes: Uint8Array): Promise<void>; }\n");
         await cp(join(folder, "snippets.mjs"), join(folder, "snippets.ts"));
-        const strict = ["--noEmit", "--strict", "--target", "es2022", "--module", "es2022", "--moduleResolution", "bundler", "--lib", "es2022,dom", "--types", ""];
-        execFileSync(join(ROOT, "bindings/web/node_modules/.bin/tsc"), [...strict, "node.d.ts", "snippets.ts"], { cwd: folder, stdio: "pipe" });
+        execFileSync(join(ROOT, "bindings/web/node_modules/.bin/tsc"), [...STRICT, "node.d.ts", "snippets.ts"], { cwd: folder, stdio: "pipe" });
     }));
 }
 

@@ -1,55 +1,13 @@
 // The page as people use it: opened from a file in Chromium, which has no network.
 
 import assert from "node:assert/strict";
-import { createHash } from "node:crypto";
 import { readFile, writeFile } from "node:fs/promises";
-import { createServer } from "node:http";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
-import { pathToFileURL } from "node:url";
-import { browser, colours, serialAbove, until } from "../../../tests/browser/support.mjs";
+import { test } from "node:test";
+import { browser, colours, until } from "../../../tests/browser/support.mjs";
 import { WRITERS } from "./formats.mjs";
-import { BUILT, DATA, assertDocument, dp, labelsOf, native, program, recorded, skip, withFolder, written } from "./support.mjs";
-
-const PAGE = pathToFileURL(join(BUILT, "depthplanes.html")).href;
-
-let chrome;
-before(async () => chrome = await browser());
-after(() => chrome?.close());
-
-/** Opens the page without a network; it has asked nobody for anything and complained of nothing in the end. */
-async function withPage(use, { context = chrome.context, allowed = /^$/ } = {}) {
-    const page = await context.newPage();
-    const complaints = [];
-    page.on("pageerror", error => complaints.push(error.stack));
-    page.on("console", message => message.type() === "error" && complaints.push(message.text()));
-    page.on("request", request => /^(file|blob|data):/.test(request.url()) || complaints.push(`asks ${request.url()}`));
-    await context.setOffline(true);
-    await page.goto(PAGE);
-    await serialAbove(page, 0);
-    await use(page);
-    assert.deepEqual(complaints.filter(text => !allowed.test(text)), []);
-    await page.close();
-}
-
-/** Does something and waits until it is drawn. */
-async function drawn(page, act) {
-    const before = await page.evaluate(() => Number(document.body.dataset.serial));
-    await act();
-    await serialAbove(page, before);
-}
-
-const open = (page, file) => drawn(page, () => page.setInputFiles("#file", file));
-const planes = page => page.locator("#planes tbody tr").count();
-const banner = page => page.locator("#banner").textContent();
-/** Whether the map of the page has these labels. */
-async function hasLabels(page, labels) {
-    const shown = await page.evaluate(async () => {
-        const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", window.depthplanes.frame.labels));
-        return [...digest].map(byte => byte.toString(16).padStart(2, "0")).join("");
-    });
-    return shown === createHash("sha256").update(labels).digest("hex");
-}
+import { banner, drawn, hasLabels, open, planes, type, withPage, writeMap } from "./page.mjs";
+import { DATA, assertDocument, dp, labelsOf, native, program, recorded, skip, withFolder, written } from "./support.mjs";
 
 /** The largest patch of a plane, or of none, as a point of the drawing. */
 function pixelWhere(page, hasPlane) {
@@ -77,7 +35,10 @@ test("it opens from a file without a network, and shows a sample in both views",
     const shot = await page.locator("#view3d .stage").screenshot();
     assert.ok(shot.length > 20_000, `the view in space is empty: ${shot.length} bytes`);
     assert.match(await page.locator("#speed").textContent(), /^\d+ planes in \d+\.\d ms$/);
-    assert.match(await page.locator("#stages").textContent(), /read.*tiles.*grow.*ground.*outlines/);
+    assert.match(await page.locator("#stages").textContent(), /scene.*tiles.*grow.*ground.*outlines/);
+    const [, ms] = / in (\S+ ms)$/.exec(await page.locator("#speed").textContent());
+    assert.match(await page.locator("#total").textContent(), new RegExp(`^${ms} the method, .* before and after it$`));
+    assert.match(await page.locator("#in-use").textContent(), /Unit in use.* of the scene.*Camera in use580, 580, 319\.5, 239\.5 of the scene/);
     await page.click("#licences");
     assert.match(await page.locator("#licence-text").textContent(), /three\.js[^]*Permission is hereby granted/);
 }));
@@ -153,6 +114,7 @@ test("a slider changes the planes, and what is not accepted is said", () => with
     await field.fill("-5");
     await field.press("Enter");
     await until(async () => assert.match(await banner(page), /min-pixels.*whole number/));
+    assert.equal(await page.locator("#refused").isHidden(), true);
     assert.equal(await field.inputValue(), value);
     await drawn(page, () => page.click("#reset-all"));
     await until(async () => assert.equal(await planes(page), before));
@@ -162,7 +124,7 @@ test("a slider changes the planes, and what is not accepted is said", () => with
 test("another method has its own parameters", () => withPage(async page => {
     await drawn(page, () => page.selectOption("#method", "ngaf"));
     const names = await page.locator("#parameters .parameter").evaluateAll(rows => rows.map(row => row.dataset.name));
-    assert.deepEqual(names, dp.methods().find(({ name }) => name === "ngaf").parameters.map(({ name }) => name));
+    assert.deepEqual(names, dp.methods().find(({ name }) => name === "ngaf").parameters.map(({ name }) => name.replaceAll("_", "-")));
     const { labels } = new dp.Detector({ method: "ngaf" }).detect(dp.scene("room:sensor=kinect"));
     assert.ok(await hasLabels(page, labels));
 }));
@@ -209,7 +171,9 @@ test("files that are none, and cameras that are none, say what is wrong", () => 
         await writeFile(join(folder, name), bytes);
         await page.setInputFiles("#file", join(folder, name));
         await until(async () => assert.match(await banner(page), words));
+        said.push(await banner(page));
     };
+    const said = [];
     await refused("letter.txt", "Dear Sir", /letter\.txt: .*accepted/);
     await refused("empty.png", "", /empty\.png: /);
     const { depth, width, height } = dp.scene("boxes:sensor=clean_mm,size=160x120");
@@ -221,18 +185,90 @@ test("files that are none, and cameras that are none, say what is wrong", () => 
     assert.equal(await page.locator("#banner").isHidden(), true);
     assert.match(await page.locator("#view3d .hint").textContent(), /camera/);
     await page.click("[data-output='cloud.ply']");
-    await until(async () => assert.match(await banner(page), /intrinsics/));
+    await until(async () => assert.match(await banner(page), /give “Camera” or “Sensor”/));
+    assert.match(await page.locator("#in-use").textContent(), /millimetre.*Camera in usenone/);
     await page.locator("#camera").fill("580, 580, wide");
     await page.keyboard.press("Enter");
     await until(async () => assert.match(await banner(page), /camera is \[580,580,"wide"\]; accepted: \[fx, fy, cx, cy\]/));
     await writeFile(join(folder, "camera.json"), "{}");
     await page.setInputFiles("#camera-file", join(folder, "camera.json"));
-    await until(async () => assert.doesNotMatch(await banner(page), /wide/));
+    await until(async () => assert.match(await banner(page), /^camera\.json: /));
     await writeFile(join(folder, "camera.yaml"), "camera_matrix: {rows: 3, cols: 3, data: [145, 0, 80, 0, 145, 60, 0, 0, 1]}\nimage_width: 160\nimage_height: 120\ndistortion_model: plumb_bob\ndistortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}\n");
     await drawn(page, () => page.setInputFiles("#camera-file", join(folder, "camera.yaml")));
     assert.equal(await page.locator("#camera").inputValue(), "camera.yaml");
+    assert.match(await page.locator("#in-use").textContent(), /145, 145, 80, 60 of camera\.yaml/);
+    for (const text of said) assert.doesNotMatch(text, /--|cargo|`depthplanes /);
     assert.equal(await page.locator("#view3d .hint").isHidden(), true);
 })));
+
+test("without points there are no ids in space", () => withFolder(folder => withPage(async page => {
+    const overlay = page.locator("#view3d .overlay");
+    assert.equal(await overlay.isVisible(), true);
+    await open(page, await writeMap(folder, "boxes.pgm", "boxes:sensor=clean_mm,size=160x120"));
+    assert.match(await page.locator("#view3d .hint").textContent(), /^Points in space need/);
+    assert.equal(await overlay.isVisible(), false);
+    await drawn(page, () => type(page, "#camera", "145, 145, 79.5, 59.5"));
+    assert.equal(await overlay.isVisible(), true);
+})));
+
+test("ids stand inside of their planes", () => withPage(async page => {
+    const shares = await page.evaluate(() => {
+        const { labels, width, planes, badges } = window.depthplanes.frame;
+        const around = [-4, 0, 4].flatMap(dv => [-4, 0, 4].map(du => dv * width + du));
+        return planes.slice(0, 15).map(({ id, label }) => around.filter(step => labels[badges.get(id).place + step] === label).length / around.length);
+    });
+    assert.equal(shares.length, 15);
+    assert.ok(shares.every(share => share === 1), shares.join());
+}));
+
+test("no number of the table is cut off, and times have one line", () => withPage(async page => {
+    await page.setViewportSize({ width: 900, height: 600 });
+    await page.locator("details", { hasText: "Time" }).last().evaluate(element => element.open = true);
+    for (const size of ["13px", "18px", "22px"]) {
+        await page.evaluate(size => document.getElementById("planes").style.fontSize = size, size);
+        await page.locator("#planes tbody tr").first().click();
+        const [wide, seen] = await page.locator("#planes").evaluate(element => [element.scrollWidth, element.clientWidth]);
+        assert.ok(wide <= seen, `${size}: ${wide} ${seen}`);
+        assert.ok(await page.locator("#planes th:last-child").isVisible());
+    }
+    const heights = await page.locator(".stage-row").evaluateAll(rows => rows.map(row => row.clientHeight));
+    assert.ok(heights.length > 5 && Math.max(...heights) === Math.min(...heights), heights.join());
+}));
+
+test("a wide map has the width of the page, and a tall page a longer table", () => withFolder(folder => withPage(async page => {
+    const shown = () => page.evaluate(() => {
+        const { view2d, frame } = window.depthplanes;
+        return view2d.place().zoom * frame.map.height / document.querySelector("main").clientHeight;
+    });
+    await page.setViewportSize({ width: 1440, height: 900 });
+    await open(page, await writeMap(folder, "wide.pgm", "boxes:sensor=clean_mm,size=640x360"));
+    await until(async () => assert.ok(await shown() > 0.42, `${await shown()}`));
+    await open(page, await writeMap(folder, "tall.pgm", "boxes:sensor=clean_mm,size=300x400"));
+    await until(async () => assert.ok(await shown() > 0.75, `${await shown()}`));
+    await page.setViewportSize({ width: 1920, height: 1080 });
+    await drawn(page, () => page.selectOption("#sample", "room:sensor=kinect"));
+    const rows = await page.locator("#planes").evaluate(element => element.clientHeight / element.querySelector("tbody tr").offsetHeight);
+    assert.ok(rows > 14, `${rows}`);
+})));
+
+test("curved surfaces are shown from the pixel that asks for them", { skip }, () => withPage(async page => {
+    await open(page, join(DATA, "gt_real/felix_0.depth.png"));
+    const position = await page.evaluate(() => {
+        const { left, top, zoom } = window.depthplanes.view2d.place();
+        return { x: left + 344.5 * zoom, y: top + 99.5 * zoom };
+    });
+    await page.locator("#view2d .drawing").click({ position });
+    await until(async () => assert.match(await page.locator("#pixel .verdict").textContent(), /^No plane here: it is part of a curved surface; “Curved”/));
+    assert.equal(await page.locator("#pixel .why").isVisible(), false);
+    await drawn(page, () => page.locator("#pixel .try button", { hasText: "Show curved surfaces" }).click());
+    assert.equal(await page.locator("#curved").isChecked(), true);
+    await until(async () => assert.match(await page.locator("#pixel").textContent(), /Curved surface\d+/));
+    const labels = await page.evaluate(() => window.depthplanes.frame.curved.reduce((most, label) => Math.max(most, label), 0));
+    const { curved } = new dp.Detector({ curved: true }).detect(dp.read(await readFile(join(DATA, "gt_real/felix_0.depth.png"))));
+    assert.ok(labels > 0 && labels === curved.reduce((most, label) => Math.max(most, label), 0));
+    await drawn(page, () => page.selectOption("#method", "ngaf"));
+    assert.equal(await page.locator("#curved").isDisabled(), true);
+}));
 
 test("a file that is dropped is shown", () => withPage(async page => {
     const { depth, width, height } = dp.scene("stairs:sensor=clean_mm,size=160x120");
@@ -275,21 +311,3 @@ test("it fits a small screen", () => withPage(async page => {
         assert.ok(box.x >= 0 && box.x + box.width <= 390, `${id} ${JSON.stringify(box)}`);
     }
 }));
-
-test("the snippet of HTML on the page of the docs runs in a browser", async () => {
-    const text = await readFile(join(import.meta.dirname, "../../../docs/browser.md"), "utf8");
-    const [, html] = /^```html\n([^]*?)^```/m.exec(text);
-    const types = { js: "text/javascript", wasm: "application/wasm" };
-    const server = createServer(async ({ url }, response) => {
-        const [name] = url.split("/depthplanes/").slice(1);
-        response.setHeader("Content-Type", types[name?.split(".").pop()] ?? "text/html");
-        response.end(name ? await readFile(join(BUILT, "package", name)) : `<!doctype html>${html}`);
-    });
-    await new Promise(resolve => server.listen(0, "127.0.0.1", resolve));
-    const own = await browser();
-    const page = await own.context.newPage();
-    await page.goto(`http://127.0.0.1:${server.address().port}/`);
-    await until(async () => assert.match(await page.locator("body").innerText(), /\d+ planes/));
-    await own.close();
-    server.close();
-});

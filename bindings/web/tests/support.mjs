@@ -23,7 +23,7 @@ export const RAW = { width: 640, height: 480 };
 const { load } = await import(join(BUILT, "package/index.js"));
 export const dp = await load();
 
-/** Runs the program; what it prints. */
+/** Runs the program, which is built with the feature `exr`; what it prints. */
 export function program(words, cwd) {
     return execFileSync(process.env.DEPTHPLANES ?? "depthplanes", words, { cwd, encoding: "utf8", maxBuffer: 2 ** 28, stdio: ["ignore", "pipe", "pipe"] });
 }

@@ -25,7 +25,7 @@ pub struct Shown<'a> {
     pub ground: Option<&'a Ground>,
 }
 
-/// The message of a frame, with the arrays `depth`, `labels`, `marks`, `corners_px` and `corners_m`.
+/// The message of a frame, with the arrays `depth`, `labels`, `marks`, `curved`, `corners_px` and `corners_m`.
 ///
 /// # Errors
 /// Those of [`Frame::view`].
@@ -39,6 +39,9 @@ pub fn frame_message(shown: &Shown<'_>) -> depthplanes::Result<Message> {
     let marks = ground.map_or(&[][..], |ground| &ground.marks);
     if !marks.is_empty() {
         message.add_u8("marks", &thinned(marks, frame.width, picture.step));
+    }
+    if let Some(curved) = &detection.curved {
+        message.add_u16("curved", &thinned(&curved.labels, frame.width, picture.step));
     }
     let rings = rings(outlines, &mut message);
     let planes: Vec<Value> = detection.planes.iter().map(|of| plane(of, shown)).collect();

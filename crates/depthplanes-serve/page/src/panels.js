@@ -12,21 +12,24 @@ const swatch = plane => {
     return mark;
 };
 
+/** Columns that are left out, one after the other, where the table is wider than its place: no number is cut off. */
+const SPARE = ["tilt", "class", "area"];
+
 /** How steep a plane is: against the floor, or else against the picture. */
 export const tilt = plane => plane.slope_deg ?? (plane.normal ? Math.acos(Math.min(1, -plane.normal[2])) * 180 / Math.PI : NaN);
 
 /** The table of planes; `choose` is told the id of the row that is clicked, or entered. */
 export function showPlanes(element, { planes, unit }, chosen, choose) {
     const scroll = element.scrollTop;
-    const head = [["id", "text"], ["class", "text"], ["depth"], ["tilt"], ["area"], ["pixels"]];
+    const head = [["id", "text"], ["class", "text class"], ["depth"], ["tilt", "tilt"], ["area", "area"], ["pixels"]];
     const heads = head.map(([textContent, className = ""]) => node("th", { textContent, className }));
     const rows = planes.map(plane => {
         const cells = [
             node("td", { className: "text" }, swatch(plane), String(plane.id)),
-            node("td", { className: "text", textContent: plane.class ?? "–" }),
+            node("td", { className: "text class", textContent: plane.class ?? "–" }),
             node("td", { textContent: metres(plane.depth_m) }),
-            node("td", { textContent: degrees(tilt(plane)) }),
-            node("td", { textContent: Number.isFinite(plane.area_m2) ? `${plane.area_m2.toFixed(2)} m²` : "–" }),
+            node("td", { className: "tilt", textContent: degrees(tilt(plane)) }),
+            node("td", { className: "area", textContent: Number.isFinite(plane.area_m2) ? `${plane.area_m2.toFixed(2)} m²` : "–" }),
             node("td", { textContent: plane.pixel_count }),
         ];
         const row = node("tr", { className: plane.id === chosen ? "chosen" : "" }, ...cells);
@@ -42,6 +45,7 @@ export function showPlanes(element, { planes, unit }, chosen, choose) {
     };
     const focused = element.contains(document.activeElement) && document.activeElement.dataset.id;
     element.replaceChildren(planes.length ? table : node("p", { className: "muted", textContent: "No plane in this frame." }));
+    for (const column of SPARE) if (element.scrollWidth > element.clientWidth) table.classList.add(`without-${column}`);
     element.scrollTop = scroll;
     if (focused) element.querySelector(`[data-id="${focused}"]`)?.focus({ preventScroll: true });
 }
@@ -66,7 +70,8 @@ export function showGround(element, { ground }) {
     ]));
 }
 
-function facts(rows) {
+/** Names and what stands beside them. */
+export function facts(rows) {
     return node("dl", { className: "facts" }, ...rows.flatMap(([name, value]) => [
         node("dt", { textContent: name }), node("dd", {}, ...[value].flat()),
     ]));
@@ -84,16 +89,22 @@ export class Stages {
         for (const [name, ms] of stages) this.means.set(name, 0.9 * (this.means.get(name) ?? ms) + 0.1 * ms);
     }
 
-    show() {
+    /** Shows them; returns the milliseconds of the stages that are named, or of all. Others are muted. */
+    show(names) {
         const all = [...this.means];
         const most = Math.max(0.1, ...all.map(([, ms]) => ms));
+        const isOwn = ([name]) => !names || names.includes(name);
         this.element.replaceChildren(...all.map(([name, ms]) => {
             const bar = node("i");
             bar.style.width = `${100 * ms / most}%`;
-            return node("div", { className: "stage-row" }, node("span", { textContent: name }),
-                node("span", { className: "meter" }, bar), node("span", { textContent: `${ms.toFixed(2)} ms` }));
+            const className = isOwn([name]) ? "stage-row" : "stage-row muted";
+            return node("div", { className }, node("span", { textContent: name }),
+                node("span", { className: "meter" }, bar), node("span", { textContent: `${ms.toFixed(ms < 100 ? 2 : 0)} ms` }));
         }));
-        this.total.textContent = `${all.reduce((sum, [, ms]) => sum + ms, 0).toFixed(1)} ms a frame`;
+        const [own, whole] = [all.filter(isOwn), all].map(rows => rows.reduce((sum, [, ms]) => sum + ms, 0));
+        const rest = whole - own;
+        this.total.textContent = names ? `${own.toFixed(1)} ms the method, ${rest.toFixed(1)} ms before and after it` : `${whole.toFixed(1)} ms a frame`;
+        return own;
     }
 }
 
@@ -115,5 +126,7 @@ export function showPixel(element, frame, [u, v], plane, more) {
         if (Number.isFinite(plane.height_m)) rows.push(["Above floor", metres(plane.height_m, 3)]);
         if (plane.age) rows.push(["Followed for", `${plane.age} frames`]);
     }
+    const curved = frame.curved?.[at];
+    if (curved) rows.push(["Curved surface", curved]);
     element.replaceChildren(facts(rows), ...more);
 }

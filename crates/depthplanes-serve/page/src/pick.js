@@ -50,14 +50,16 @@ export class Pick {
         if (id !== this.id) this.choose(this.id = id);
     }
 
-    /** The answer to `explain`. */
-    answer({ at, verdict, findings, suggestions, error }) {
+    /** The answer to `explain`; `remedies` are other things to do, each a text and what acts. */
+    answer({ at, verdict, findings, suggestions, error, remedies = [] }) {
         if (!this.at || at.some((x, i) => x !== this.at[i]) || !this.explained) return;
         this.missed = Boolean(error);
         const more = error ? [node("p", { className: "verdict", textContent: error })] : [
             node("p", { className: "verdict", textContent: verdict.text }),
-            node("div", { className: "try" }, ...suggestions.map(suggestion => this.suggestion(suggestion))),
-            node("ul", { className: "why" }, ...findings.map(finding)),
+            node("div", { className: "try" }, ...remedies.map(({ text, act }) => this.remedy(text, act)),
+                ...suggestions.map(suggestion => this.suggestion(suggestion))),
+            node("details", { className: "inner" }, node("summary", { textContent: "What each stage saw" }),
+                node("ul", { className: "why" }, ...findings.map(finding))),
         ];
         showPixel(this.element, this.explained, at, null, more);
     }
@@ -66,10 +68,15 @@ export class Pick {
         const wanted = Object.entries(parameters);
         const values = wanted.map(([name, value]) => `${name} ${value}`).join(", ");
         const title = `The pixel is then on a plane of ${plane_pixels} pixels; ${planes_after} planes instead of ${planes_before}.`;
-        const button = node("button", { textContent: `Try ${values}`, title });
+        return this.remedy(`Try ${values}`, () => wanted.forEach(([name, value]) => this.ask("set", { name, value })), title);
+    }
+
+    /** A button that changes something, after which the pixel is looked at anew. */
+    remedy(textContent, act, title = "") {
+        const button = node("button", { textContent, title });
         button.onclick = () => {
             this.explained = null;
-            wanted.forEach(([name, value]) => this.ask("set", { name, value }));
+            act();
         };
         return button;
     }

@@ -1,10 +1,14 @@
 // The map as a picture, with planes or the ground over it, outlines and ids.
 
+import { badgesOf } from "./badges.js";
 import { MARKS, Range, css, grey, viridis } from "./colours.js";
 import { fitted, writeId } from "./labels.js";
 
 /** Fewer pixels of a plane than this share of the picture get no id. */
 const LEAST_FOR_ID = 0.004;
+/** Colour of curved surfaces, and pixels of the picture from one of their stripes to the next: a power of two. */
+const CURVED = [214, 160, 255];
+const STRIPES_PX = 8;
 
 export class View2d {
     /** `pick` is told the pixel of the map that is clicked. */
@@ -24,6 +28,7 @@ export class View2d {
 
     /** Shows a frame; `anew` where it has nothing to do with the one before. */
     show(frame, anew) {
+        frame.badges = badgesOf(frame, anew ? undefined : this.frame?.badges);
         this.frame = frame;
         this.range.follow(frame, anew);
         this.redraw();
@@ -59,6 +64,8 @@ export class View2d {
         const pixels = new Uint32Array(image.data.buffer);
         const table = this.range.table(frame, this.mode === "depth" ? viridis : grey);
         const over = this.mode === "ground" ? marks : labels;
+        const curved = this.mode === "planes" && frame.curved;
+        const stripe = CURVED.map(x => x * Math.round(256 * this.opacity));
         const colours = this.mode === "ground" ? MARKS : [null, ...frame.planes.map(plane => plane.colour)];
         const share = Math.round(256 * (this.mode === "depth" ? 0 : this.opacity));
         if (!over || share === 0) {
@@ -68,7 +75,7 @@ export class View2d {
             const rest = 256 - share;
             for (let at = 0; at < pixels.length; at++) {
                 const below = table[depth[at]];
-                const above = tinted[over[at]];
+                const above = tinted[over[at]] ?? (curved && curved[at] && isStripe(at, frame.width) ? stripe : null);
                 pixels[at] = above
                     ? 0xff000000 | (((below >>> 16 & 255) * rest + above[2]) & 0xff00) << 8
                         | ((below >>> 8 & 255) * rest + above[1]) & 0xff00 | ((below & 255) * rest + above[0]) >>> 8
@@ -93,7 +100,7 @@ export class View2d {
             for (const plane of frame.planes.toReversed()) {
                 const chosen = plane.id === this.chosen;
                 if (plane.pixel_count >= least || chosen) {
-                    writeId(context, String(plane.id), spot(...inside(frame, plane)), css(plane.colour), chosen);
+                    writeId(context, String(plane.id), spot(...placeOf(frame, plane)), css(plane.colour), chosen);
                 }
             }
         }
@@ -145,22 +152,11 @@ export class View2d {
     }
 }
 
-/** A pixel of the plane near its middle; the middle itself may be that of another plane, or of none. */
-function inside(frame, plane) {
-    const [u, v] = plane.centroid;
-    const is = (u, v) => {
-        const [column, row] = [Math.round(u / frame.step), Math.round(v / frame.step)];
-        return column >= 0 && row >= 0 && column < frame.width && row < frame.height
-            && frame.labels[row * frame.width + column] === plane.label;
-    };
-    const reach = Math.max(frame.map.width, frame.map.height) / 2;
-    for (let away = 0; away < reach; away += 6) {
-        for (let turn = 0; turn < 16; turn++) {
-            const angle = turn * Math.PI / 8;
-            const [x, y] = [u + away * Math.cos(angle), v + away * Math.sin(angle)];
-            if (is(x, y)) return [x, y];
-            if (away === 0) break;
-        }
-    }
-    return [u, v];
+/** Whether a pixel lies on a stripe of the hatching. */
+const isStripe = (at, width) => (at % width + Math.floor(at / width) & STRIPES_PX - 1) < STRIPES_PX / 2;
+
+/** The pixel of the map at which the id of a plane stands. */
+function placeOf(frame, { id }) {
+    const { place } = frame.badges.get(id);
+    return [place % frame.width * frame.step, Math.floor(place / frame.width) * frame.step];
 }

@@ -10,6 +10,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { MARKS, css } from "./colours.js";
 import { fences } from "./fences.js";
 import { fitted, writeId } from "./labels.js";
+import { valueAt } from "./message.js";
 import { PointCloud } from "./points.js";
 
 const BACKGROUND = 0x0f1216;
@@ -75,6 +76,7 @@ export class View3d {
         if (!this.renderer) return;
         this.frame = frame;
         const metric = frame.camera !== null && frame.unit === "m";
+        for (const canvas of [this.renderer.domElement, this.labels]) canvas.hidden = !metric;
         this.say(metric ? "" : `Points in space need the unit of the map and its camera: ${this.remedy}.`);
         this.scene.visible = metric;
         if (metric) {
@@ -151,10 +153,18 @@ export class View3d {
         for (const plane of this.frame.planes.toReversed()) {
             const chosen = plane.id === this.chosen;
             if (!plane.centroid_m || (plane.pixel_count < least && !chosen)) continue;
-            const point = new Vector3(...plane.centroid_m).applyMatrix4(this.sensor.matrix).project(this.camera);
+            const point = new Vector3(...this.badgeOf(plane)).applyMatrix4(this.sensor.matrix).project(this.camera);
             if (Math.abs(point.z) > 1) continue;
             writeId(context, String(plane.id), [(point.x + 1) / 2 * width, (1 - point.y) / 2 * height], css(plane.colour), chosen);
         }
+    }
+
+    /** Where the id of a plane stands, in the sensor's axes; the centroid where nothing was measured. */
+    badgeOf({ id, centroid_m }) {
+        const { place } = this.frame.badges.get(id);
+        const depth = valueAt(this.frame, place);
+        const point = [this.rays[2 * place] * depth, this.rays[2 * place + 1] * depth, depth];
+        return point.every(Number.isFinite) ? point : centroid_m;
     }
 
     resize() {
