@@ -55,19 +55,6 @@ def test_supervision(some):
     assert (drawn.any(axis=2) == (some.labels > 0)).mean() > 0.99
 
 
-def test_open3d(some, tell):
-    open3d = pytest.importorskip("open3d", exc_type=ImportError)  # it lacks libraries of some systems
-    clouds = some.to_open3d()
-    assert [len(cloud.points) for cloud in clouds] == some.pixel_counts.tolist()
-    for k, cloud in enumerate(clouds[:5]):
-        assert np.allclose(np.asarray(cloud.normals)[0], some.normals[k])
-        open3d.utility.random.seed(1)
-        model, inliers = cloud.segment_plane(0.01, 3, 200)
-        model = np.array(model) * np.sign(model[3] * some.distances[k])
-        assert np.degrees(np.arccos(min(1, model[:3] @ some.normals[k]))) < 1 and abs(model[3] - some.distances[k]) < 0.03
-        assert len(inliers) > 0.99 * some.pixel_counts[k]
-
-
 def test_matplotlib(some, tmp_path):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
