@@ -115,7 +115,7 @@ fn labels_name(key: &Key) -> String {
         whole.chars().take(LONGEST).map(|c| if is_plain(c) || c.is_ascii_uppercase() { c } else { '_' }).collect();
     // Dots part the name; the map may have some of its own.
     if name != whole || !whole.chars().all(is_plain) || dataset.contains('.') || method.contains('.') {
-        name += &format!(".{:016x}", fnv(&format!("{dataset}\n{map}\n{method}")));
+        name += &format!(".{:016x}", fnv(format!("{dataset}\n{map}\n{method}")));
     }
     format!("{name}.{:08x}.png", fnv(parameters) as u32)
 }
