@@ -37,9 +37,14 @@ pub(crate) fn borrow<'py>(array: &Bound<'py, PyAny>) -> Result<(Bound<'py, PyAny
         if map.pixels().is_some() {
             return Ok((array.clone(), map));
         }
-        let copy = array.py().import("numpy")?.call_method1("ascontiguousarray", (array,))?;
-        let map = typed(&copy).filter(|map| map.pixels().is_some()).expect("a copy is in order");
-        return Ok((copy, map));
+        // A method of every array, which copies what is in order but not aligned, too.
+        let copy = array.call_method1(intern!(array.py(), "copy"), ("C",))?;
+        return match typed(&copy).filter(|map| map.pixels().is_some()) {
+            Some(map) => Ok((copy, map)),
+            None => {
+                Err(Error::Type("depth is an array whose copy is not in order; accepted: an array of NumPy".into()))
+            }
+        };
     }
     Ok((array.clone(), Borrowed::Other(untyped.clone())))
 }
@@ -123,20 +128,21 @@ fn of_other(py: Python<'_>, array: &Bound<'_, PyUntypedArray>, options: &ReadOpt
     py.detach(|| Ok(frame_of_samples(samples, &sample, size, options)?))
 }
 
-/// Pixels that a fingerprint looks at.
-const LOOKED_AT: usize = 256;
+/// About how many pixels a fingerprint looks at.
+const LOOKED_AT: usize = 2048;
 
-/// A number that tells whether a map was written to: of evenly spaced pixels (FNV-1a).
+/// A number that tells whether a map was written to: of evenly spaced pixels (FNV-1a). Of 640 x 480 pixels it looks at one at least
+/// in any square of 24 x 24.
 pub(crate) fn fingerprint(map: AnyView<'_>) -> u64 {
     fn of<T: Pixel>(map: &DepthView<'_, T>) -> u64 {
-        let (width, pixels) = (map.width(), map.area());
-        // An odd number of pixels apart, so as not to stay in a few columns.
-        let step = (pixels / LOOKED_AT) | 1;
-        let look = |hash: u64, at: usize| {
-            let value: f64 = map.row(at / width)[at % width].into();
+        let step = (map.area() / LOOKED_AT).max(1);
+        // From row to row by the golden section of that, which leaves no wide gaps.
+        let shift = step * 618 / 1000;
+        let pixels = (0..map.height()).flat_map(|v| map.row(v).iter().skip(v * shift % step).step_by(step));
+        pixels.fold(0xcbf2_9ce4_8422_2325, |hash, &pixel| {
+            let value: f64 = pixel.into();
             (hash ^ value.to_bits()).wrapping_mul(0x0000_0100_0000_01b3)
-        };
-        (0..pixels).step_by(step).fold(0xcbf2_9ce4_8422_2325, look)
+        })
     }
     with_view!(map, map => of(&map))
 }

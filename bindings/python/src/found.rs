@@ -28,6 +28,8 @@ pub(crate) enum Map {
 pub(crate) struct Found {
     lent: Lent,
     map: Map,
+    /// The whole result, if this is a selection of its planes.
+    whole: Option<Py<Found>>,
     /// The map as a frame, once it was asked for.
     frame: OnceLock<Arc<Pixels>>,
     /// What a person should know of the result, once it was looked for, which takes as long as the detection.
@@ -39,7 +41,7 @@ pub(crate) struct Found {
 impl Found {
     pub(crate) fn new(lent: Lent, map: Map, sensor: Sensor, source: &str) -> Self {
         let (frame, notes) = (OnceLock::new(), OnceLock::new());
-        Found { lent, map, frame, notes, sensor, source: source.to_string() }
+        Found { lent, map, whole: None, frame, notes, sensor, source: source.to_string() }
     }
 
     pub(crate) fn detection(&self) -> &Detection {
@@ -90,15 +92,27 @@ impl Found {
         legend: bool,
         act: impl FnOnce(&Report<'_>) -> Result<T> + Send,
     ) -> Result<T> {
-        let (frame, recipe) = (self.frame(py)?, &self.lent.pool.recipe);
-        let (source, coplanar) = (source.unwrap_or(&self.source), recipe.coplanar);
+        let (frame, notes) = (self.frame(py)?, self.doubts(py)?);
         py.detach(|| {
             let outlines = outlines.map(|wanted| self.outlined(wanted)).transpose()?;
-            let report = Report::new(source, frame, recipe.method, &recipe.values, self.detection());
-            let report = Report { coplanar, legend, outlines: outlines.as_ref(), ..report };
-            let notes = self.notes.get_or_init(|| doubts(&report));
-            act(&Report { notes, ..report })
+            let source = source.unwrap_or(&self.source);
+            act(&Report { source, notes, legend, outlines: outlines.as_ref(), ..self.plain_report(frame) })
         })
+    }
+
+    /// What a person should know of the whole result.
+    fn doubts(&self, py: Python<'_>) -> Result<&[String]> {
+        if let Some(whole) = &self.whole {
+            return whole.get().doubts(py);
+        }
+        let frame = self.frame(py)?;
+        Ok(py.detach(|| self.notes.get_or_init(|| doubts(&self.plain_report(frame)))))
+    }
+
+    fn plain_report<'a>(&'a self, frame: &'a Pixels) -> Report<'a> {
+        let recipe = &self.lent.pool.recipe;
+        let report = Report::new(&self.source, frame, recipe.method, &recipe.values, self.detection());
+        Report { coplanar: recipe.coplanar, ..report }
     }
 
     fn outlined(&self, (tolerance_px, min_hole_px): (f64, usize)) -> Result<depthplanes::outline::Outlines> {
@@ -169,8 +183,9 @@ impl Found {
     }
 
     /// Those of the planes whose places are given, in that order, with labels 1, 2, ..; the others are no planes any more.
-    fn select(&self, py: Python<'_>, places: Vec<usize>) -> Result<Found> {
-        let from = self.detection();
+    fn select(whole: &Bound<'_, Self>, places: Vec<usize>) -> Result<Found> {
+        let (py, of) = (whole.py(), whole.get());
+        let from = of.detection();
         let mut names = vec![0u16; from.planes.len() + 1];
         for (&place, label) in places.iter().zip(1..) {
             let name = names.get_mut(place + 1).expect("Python looked up the places");
@@ -178,11 +193,11 @@ impl Found {
                 return Err(Error::Input(format!("plane {place} is asked for twice; accepted: each plane once")));
             }
         }
-        let (map, frame) = (self.map.clone_ref(py), self.frame.clone());
+        let (map, frame) = (of.map.clone_ref(py), of.frame.clone());
         let detection = py.detach(|| selected(from, &names));
-        let lent = Lent { detection, seconds: self.lent.seconds, pool: self.lent.pool.clone() };
-        let notes = OnceLock::new();
-        Ok(Found { lent, map, frame, notes, sensor: self.sensor, source: self.source.clone() })
+        let lent = Lent { detection, seconds: of.lent.seconds, pool: of.lent.pool.clone() };
+        let whole = Some(of.whole.as_ref().map_or_else(|| whole.clone().unbind(), |whole| whole.clone_ref(py)));
+        Ok(Found { whole, frame, ..Found::new(lent, map, of.sensor, &of.source) })
     }
 
     /// Columns and rows of the map.

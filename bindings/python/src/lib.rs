@@ -41,6 +41,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<tracker::Tracker>()?;
     module.add_class::<video::Video>()?;
     module.add_function(wrap_pyfunction!(main, module)?)?;
+    module.add_function(wrap_pyfunction!(recipe::forked, module)?)?;
     module.add_function(wrap_pyfunction!(records::noise, module)?)?;
     module.add_function(wrap_pyfunction!(records::score, module)?)?;
     module.add_function(wrap_pyfunction!(tables::colours, module)?)?;

@@ -40,7 +40,7 @@ impl Pool {
         sensor: Sensor,
     ) -> depthplanes::Result<Lent> {
         let idle = locked(&self.idle).pop();
-        let mut detector = idle.unwrap_or_else(|| self.recipe.detector());
+        let mut detector = idle.unwrap_or_else(|| self.recipe.detector()).threads(self.recipe.threads());
         detector.set_sensor(sensor);
         let start = Instant::now();
         detector.detect(map()?)?;

@@ -3,7 +3,18 @@
 use crate::error::{Error, Result};
 use depthplanes::methods::{self, MethodInfo};
 use depthplanes::{Coplanar, Detector};
+use pyo3::prelude::*;
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Whether this process is the copy of another one.
+static IS_FORKED: AtomicBool = AtomicBool::new(false);
+
+/// Notes that this process was forked. The threads that the library had started are not in it, and would be waited for.
+#[pyfunction]
+pub(crate) fn forked() {
+    IS_FORKED.store(true, Ordering::Relaxed);
+}
 
 /// A method with a value for each of its parameters, all checked.
 pub(crate) struct Recipe {
@@ -47,11 +58,16 @@ impl Recipe {
         Ok(Recipe { method, values, threads, curved, coplanar })
     }
 
+    /// The threads for a map: those that were asked for, but one in a process that was forked. The answer is the same.
+    pub(crate) fn threads(&self) -> usize {
+        if IS_FORKED.load(Ordering::Relaxed) { 1 } else { self.threads }
+    }
+
     /// A detector of it.
     pub(crate) fn detector(&self) -> Detector {
         const CHECKED: &str = "the parameters were checked";
         let method = self.method.of_values(&self.values).expect(CHECKED);
-        let detector = Detector::new(method).expect(CHECKED).threads(self.threads).curved(self.curved);
+        let detector = Detector::new(method).expect(CHECKED).threads(self.threads()).curved(self.curved);
         match self.coplanar {
             Some(within) => detector.merge_coplanar(within).expect(CHECKED),
             None => detector,

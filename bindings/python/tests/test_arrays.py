@@ -28,6 +28,18 @@ def labels(depth, **words):
     return first
 
 
+def unaligned(depth, offset):
+    """The same numbers, at an address that no number of theirs may have."""
+    return np.frombuffer(bytes(offset) + depth.tobytes(), depth.dtype, offset=offset).reshape(depth.shape)
+
+
+def field(depth):
+    """The same numbers in a structure without gaps."""
+    packed = np.zeros(depth.shape, np.dtype([("valid", np.uint8), ("z", depth.dtype)]))
+    packed["z"] = depth
+    return packed["z"]
+
+
 class OnlyArray:
     """As tensors of PyTorch and DataArrays of xarray are taken."""
 
@@ -62,13 +74,16 @@ class OnlyDlpack:
         lambda depth: depth.astype(np.int32),
         lambda depth: depth.astype(np.int64),
         lambda depth: depth.astype(np.uint32),
+        lambda depth: unaligned(depth, 1),
+        lambda depth: unaligned(depth.astype(np.float32), 2),
+        field,
         lambda depth: np.ma.masked_equal(depth, 0),
         lambda depth: depth.tolist(),
         OnlyArray,
         OnlyDlpack,
     ],
     ids=["copy", "fortran", "crop", "every second column", "upside down", "big-endian", "int16", "int32", "int64", "uint32",
-         "masked", "lists", "__array__", "DLPack"],
+         "unaligned", "unaligned floats", "field of a structure", "masked", "lists", "__array__", "DLPack"],
 )  # fmt: skip
 def test_arrays_of_the_same_numbers_have_the_same_labels(kinect, change):
     assert np.array_equal(labels(change(kinect), unit="mm"), labels(kinect))
@@ -136,6 +151,33 @@ def test_an_array_that_was_written_to_is_refused(kinect):
         with pytest.raises(depthplanes.InputError, match=r"detector\(depth.copy\(\)\)"):
             reads_again()
     assert planes.areas[0] > 0 and planes.mask(0).sum() == planes.pixel_counts[0], "what was found stays"
+
+
+@pytest.mark.parametrize("size", [(480, 640), (48, 64), (3000, 4000), (7, 5000), (5000, 7)])
+def test_a_change_of_a_patch_is_noticed(size):
+    depth = np.full(size, 2000, np.uint16)
+    detector, random = depthplanes.Detector(), np.random.default_rng(1)
+    detector(depth)
+    side = 2 * int(np.ceil(np.sqrt(depth.size / 2048)))
+    for _ in range(40):
+        planes = detector(depth)
+        v, u = (random.integers(max(1, length - side)) for length in size)
+        before = depth[v : v + side, u : u + side].copy()
+        depth[v : v + side, u : u + side] += 1
+        with pytest.raises(depthplanes.InputError, match="written to"):
+            planes.draw()
+        depth[v : v + side, u : u + side] = before
+
+
+def test_a_blank_first_map_settles_nothing(kinect):
+    detector = depthplanes.Detector(camera=CAMERA)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", depthplanes.ReadingWarning)
+        detector(np.zeros(kinect.shape, np.float32))
+    millimetres = kinect.astype(np.float32)
+    with pytest.warns(depthplanes.ReadingWarning, match="millimetre"):
+        detector(millimetres)
+    detector(millimetres)  # a second warning would be an error
 
 
 def test_threads_share_a_detector_and_the_answer(kinect):

@@ -242,6 +242,44 @@ def test_results_of_other_settings_are_not_mixed(frames, tmp_path):
         batch.run(frames[:10], tmp_path / "out", part=5, **words)
 
 
+def test_links_are_frames(frames, tmp_path):
+    (tmp_path / "links").mkdir()
+    for path in frames[:3]:
+        (tmp_path / "links" / os.path.basename(path)).symlink_to(path)
+    (tmp_path / "links" / "gone.png").symlink_to(tmp_path / "nothing.png")
+    (tmp_path / "links" / "folder.png").symlink_to(tmp_path)
+    assert batch.run(tmp_path / "links", tmp_path / "out", **OPTIONS) == (3, 0, 6, 1, 0)
+
+
+def test_a_name_that_is_no_text_fails_alone(frames, tmp_path):
+    (tmp_path / "maps").mkdir()
+    for name in (b"a.png", b"b-\xff.png"):
+        (tmp_path / "maps" / os.fsdecode(name)).write_bytes(pathlib.Path(frames[0]).read_bytes())
+    assert batch.run(tmp_path / "maps", tmp_path / "out", labels=tmp_path / "labels", **OPTIONS) == (2, 1, 2, 1, 0)
+    assert batch.run(tmp_path / "maps", tmp_path / "out", labels=tmp_path / "labels", **OPTIONS).skipped == 2
+    failed = rows_in(tmp_path / "out")[1]
+    assert failed["path"].endswith("b-\\udcff.png") and "not UTF-8" in failed["error"]
+
+
+def test_what_is_no_part_is_told_from_parts(frames, tmp_path):
+    out = tmp_path / "out"
+    batch.run(frames[:10], out, part=5, **OPTIONS)
+    whole = (out / "part-00001.parquet").read_bytes()
+    for name in ("part-abc.parquet", "part-00000 (copy).parquet", "part-000000.parquet", "part-1.parquet"):
+        (out / name).write_bytes(b"something else")
+    assert batch.run(frames[:10], out, part=5, **OPTIONS).skipped == 10
+    for cut in (whole[:-10], whole[10:], whole[:3]):
+        (out / "part-00001.parquet").write_bytes(cut)
+        assert batch.run(frames[:10], out, part=5, **OPTIONS) == (10, 0, 20, 2, 5)
+        assert (out / "part-00001.parquet").read_bytes() == whole
+    (out / "part-00007.parquet").write_bytes(whole)
+    for call in (lambda: batch.run(frames[:10], out, part=5, **OPTIONS), lambda: batch.read_rows(out)):
+        with pytest.raises(depthplanes.InputError, match="has part-00007.parquet, but the run is of 2 parts, the last of which is part-00001"):
+            call()
+    with pytest.raises(depthplanes.FileError, match="out/_batch.json is a file; accepted: a folder"):
+        batch.run(frames[:1], out / "_batch.json", **OPTIONS)
+
+
 def test_words_that_are_not_accepted_are_refused_before_any_work(frames, tmp_path):
     out = tmp_path / "out"
     for words, what in [

@@ -222,3 +222,21 @@ def test_the_ground_of_a_frame(planes):
     assert same.height == pytest.approx(ground.height, abs=0.02)
     wall = depthplanes.floor(np.full((240, 320), 2000, np.uint16), unit="mm", camera=(262, 262, 159.5, 119.5))
     assert wall.floor is None and np.isnan(wall.height) and wall.marks is None and wall.classes == []
+
+
+def test_notes_of_a_selection_are_those_of_the_whole_result():
+    planes = depthplanes.detect(depthplanes.scene("room:sensor=kinect"))
+    for selection in (planes[planes.areas > 100], planes[:1], planes[3:][:0]):
+        assert selection.notes == planes.notes
+    fresh = depthplanes.detect(depthplanes.scene("room:sensor=kinect"))
+    assert fresh[:0].notes == planes.notes, "they need not be asked for before"
+
+
+@pytest.mark.filterwarnings("ignore::depthplanes.ReadingWarning")
+def test_curved_surfaces_are_written(room, tmp_path):
+    planes = depthplanes.detect(room, curved=True)
+    planes.write(curved=tmp_path / "curved.png")
+    assert np.array_equal(depthplanes.read(tmp_path / "curved.png", unit="grey").depth, planes.curved)
+    with pytest.raises(depthplanes.Error, match="curved"):
+        depthplanes.detect(room).write(curved=tmp_path / "none.png")
+    assert not (tmp_path / "none.png").exists()

@@ -16,6 +16,9 @@ the camera. Pixels are column u and row v from 0.
 `python -m depthplanes` is the program of the same name.
 """
 
+import os as _os
+
+from . import _native
 from ._detector import Detector, detect
 from ._errors import (
     Error,
@@ -32,11 +35,15 @@ from ._explanation import Explanation
 from ._frame import Frame, Pose, read, scene, video
 from ._ground import Ground, floor
 from ._measures import noise, score
-from ._native import __version__
 from ._plane import Plane, Polygon, Rectangle
 from ._planes import Planes, write
 from ._tables import tables
 from ._tracker import TrackedPlane, Tracker, Tracks
+
+__version__ = _native.__version__
+
+if hasattr(_os, "register_at_fork"):
+    _os.register_at_fork(after_in_child=_native.forked)
 
 __all__ = [
     "Detector",

@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from ._planes import Planes
 
 
+#: Outputs of the program that have another name here.
+OUTPUTS = {"curved": "curved-labels"}
+
+
 class Forms:
     """What `Planes` is turned into."""
 
@@ -141,7 +145,7 @@ class Forms:
         cloud, mesh : path, optional
             Point cloud, and mesh of the planes, ``.ply``.
         curved : path, optional
-            Label image of curved surfaces.
+            Label image of curved surfaces, ``.png`` or ``.npy``; of a `Detector` with ``curved=True``.
         outlines : float, optional
             With outlines within this tolerance, pixels.
         legend : bool, optional
@@ -155,7 +159,7 @@ class Forms:
             For a name that no form has, for no file at all, and what the system does not let be written.
         """
         given = {"labels": labels, "overlay": overlay, "planes": planes, "cloud": cloud, "mesh": mesh, "curved": curved}
-        files = [(name, _accept.path(name, path)) for name, path in given.items() if path is not None]
+        files = [(OUTPUTS.get(name, name), _accept.path(name, path)) for name, path in given.items() if path is not None]
         if not files:
             raise InputError(f"there is no file to write; accepted: any of {', '.join(given)}, each with a path")
         self._found.write(files, _source(source), _outlines(outlines), _accept.flag("legend", legend))

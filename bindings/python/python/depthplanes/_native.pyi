@@ -19,6 +19,7 @@ __all__ = [
     "Video",
     "__version__",
     "colours",
+    "forked",
     "main",
     "noise",
     "score",
@@ -27,6 +28,7 @@ __all__ = [
 
 __version__: str
 
+def forked() -> None: ...
 def main(words: Sequence[str]) -> int: ...
 def noise(frames: Sequence[Frame]) -> str: ...
 def score(truth: npt.NDArray[np.uint16], prediction: npt.NDArray[np.uint16], tolerance: float, truth_from: int) -> str: ...

@@ -25,8 +25,8 @@ class Planes(Forms):
     `planes[[0, 4]]` are `Planes` again: their labels are numbered anew, and pixels of the others have label 0. In any
     of them the pixels of plane k have the label k + 1.
 
-    `points`, `draw`, `explain`, `write` and the conversions read the map again; an array that was written to since is
-    refused. Without unit and camera what is in metres is NaN.
+    `points`, `draw`, `explain`, `write` and the conversions read the map again; an array that is another map since is
+    refused, while a change of a few pixels is not noticed. Without unit and camera what is in metres is NaN.
 
     Examples
     --------
@@ -158,7 +158,7 @@ class Planes(Forms):
 
     @cached_property
     def notes(self) -> list[str]:
-        """What a person should know of how the map was read and of what was found."""
+        """What a person should know of how the map was read and of what was found; of a selection, in the whole result."""
         return [in_python(note) for note in self._found.notes()]
 
     @property

@@ -17,7 +17,7 @@ from .._optional import need
 from .._options import Path
 from ._engines import ENGINES
 from ._files import EXTRA, absolute, expand, storage
-from ._parts import Job, begin, counts_of, name_of, parts_in, settings_in
+from ._parts import Job, begin, count, counts_of, name_of, parts_in, settings_in
 from ._rows import Processor, Row, parquet, schema
 
 if TYPE_CHECKING:
@@ -127,7 +127,7 @@ def run(
     MissingFileError
         For a path or a folder that is not there.
     FileError
-        If the workers have written where this process does not see it.
+        If `out` is a file, or the workers have written where this process does not see it.
     MissingPackageError
         Without pyarrow, fsspec or the engine.
     """
@@ -143,7 +143,7 @@ def run(
     due = [(number, of_part) for number, of_part in parts if number not in there]
     if due:
         ENGINES[engine](job, due, workers, client)
-    missing = len(parts) - len(parts_in(*storage(job.out)))
+    missing = len(parts) - len(parts_in(*storage(job.out), len(parts)))
     if missing:
         text = f"{job.out}: {missing} of {len(parts)} parts were written, but not here"
         raise FileError(f"{text}; accepted: a folder or URL that this process shares with all workers")
@@ -177,7 +177,8 @@ def read_rows(out: Path, *, partial: bool = False) -> pyarrow.Table:
     settings = settings_in(files, folder)
     if settings is None:
         raise InputError(f"{out} has no results; accepted: a folder that depthplanes.batch.run has written to")
-    numbers, parts = sorted(parts_in(files, folder)), -(-settings["frames"] // settings["part"])
+    parts = count(settings["frames"], settings["part"])
+    numbers = sorted(parts_in(files, folder, parts))
     if len(numbers) < parts and not _accept.flag("partial", partial):
         text = f"{out} has {len(numbers)} of {parts} parts; repeat the run that they are of, or state partial=True"
         raise InputError(text)

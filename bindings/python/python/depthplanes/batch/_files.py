@@ -7,7 +7,7 @@ import os
 import posixpath
 import uuid
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from .. import _accept
@@ -90,7 +90,7 @@ def _expand_word(word: str, is_one: bool) -> list[str]:
         found = [path for path in files.glob(inside) if not _is_result(path)]
         lacking = "nothing matches"
     elif files.isdir(inside):
-        found = [entry["name"] for entry in files.ls(inside, detail=True) if entry["type"] == "file" and _is_map(entry["name"])]
+        found = [entry["name"] for entry in files.ls(inside, detail=True) if _is_map(entry["name"]) and _is_file(entry)]
         lacking = f"no map in this folder; looked for *{', *'.join(_endings())}"
     elif files.exists(inside):
         return [word]
@@ -99,6 +99,11 @@ def _expand_word(word: str, is_one: bool) -> list[str]:
     if not found:
         raise InputError(f"{word}: {lacking}")
     return sorted(files.unstrip_protocol(path) + joint + outer if is_url(word) else path for path in found)
+
+
+def _is_file(entry: Mapping[str, Any]) -> bool:
+    """Whether it is a file, or a link to one, of this machine."""
+    return entry["type"] == "file" or (bool(entry.get("islink")) and os.path.isfile(entry["name"]))
 
 
 def _is_map(path: str) -> bool:

@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import posixpath
+import re
 from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
@@ -13,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import _native
-from .._errors import InputError
+from .._errors import FileError, InputError
 from .._options import Path
 from .._tables import tables
 from ._files import absolute, storage, write
@@ -26,6 +27,8 @@ FRAMES = "_frames.json"
 SCHEMA = "depthplanes.batch/1"
 #: Options that may be files; workers read them again.
 FILES = ("camera", "noise_table")
+#: With what files of Parquet begin and end.
+MAGIC = b"PAR1"
 #: Threads that wait for the ends of files.
 READERS = 16
 
@@ -68,20 +71,24 @@ def begin(job: Job, frames: list[str], part: int) -> set[int]:
     ------
     InputError
         If the folder has results of something else.
+    FileError
+        If it is a file.
     """
     schema()  # a package that is missing is missed before any work
     files, folder = storage(job.out)
+    if files.isfile(folder):
+        raise FileError(f"{job.out} is a file; accepted: a folder, which need not be there")
     settings = _settings(job, part)
     known = settings_in(files, folder)
     if known is None:
         write(files, f"{folder}/{FRAMES}", _packed(frames))
         write(files, f"{folder}/{SETTINGS}", _packed(settings | {"frames": len(frames)}))
-        return parts_in(files, folder)
+        return _whole(files, folder, parts_in(files, folder, count(len(frames), part)))
     others = [f"{name}: {known.get(name)} instead of {value}" for name, value in settings.items() if known.get(name) != value]
     if others:
         raise InputError(f"{job.out} has results of other settings: {'; '.join(others)}; accepted: the same ones, or another folder")
     _check_frames(job.out, files.cat_file(f"{folder}/{FRAMES}"), frames)
-    return parts_in(files, folder)
+    return _whole(files, folder, parts_in(files, folder, count(len(frames), part)))
 
 
 def _check_frames(out: str, known: bytes, frames: list[str]) -> None:
@@ -147,12 +154,40 @@ def name_of(number: int) -> str:
     return f"part-{number:05}.parquet"
 
 
-def parts_in(files: Any, folder: str) -> set[int]:
-    """The numbers of the parts that are there, each of them whole; a machine that lost its power may leave empty ones."""
+def count(frames: int, part: int) -> int:
+    """How many parts there are of so many frames."""
+    return -(-frames // part)
+
+
+def parts_in(files: Any, folder: str, parts: int) -> set[int]:
+    """The numbers of the parts that are there, of so many. Empty files are none, nor is what has another form of name.
+
+    Raises
+    ------
+    InputError
+        If there are parts behind the last.
+    """
     files.invalidate_cache(folder)
     names = (posixpath.basename(entry["name"]) for entry in files.ls(folder, detail=True) if entry["size"] != 0)
-    numbers = (name[len("part-") : -len(".parquet")] for name in names if name.startswith("part-") and name.endswith(".parquet"))
-    return {int(number) for number in numbers}
+    matches = (re.fullmatch(r"part-([0-9]{5,})\.parquet", name) for name in names)
+    numbers = {int(match[1]) for match in matches if match and match[0] == name_of(int(match[1]))}
+    others = sorted(number for number in numbers if number >= parts)
+    if others:
+        text = f"{folder} has {name_of(others[0])}, but the run is of {parts} parts, the last of which is {name_of(parts - 1)}"
+        raise InputError(f"{text}; accepted: a folder of this run alone")
+    return numbers
+
+
+def _whole(files: Any, folder: str, numbers: set[int]) -> set[int]:
+    """Those of the parts that begin and end as Parquet does; a machine that lost its power may leave others."""
+
+    def is_whole(number: int) -> bool:
+        path = f"{folder}/{name_of(number)}"
+        return all(files.cat_file(path, *ends) == MAGIC for ends in ((0, len(MAGIC)), (-len(MAGIC), None)))
+
+    with ThreadPoolExecutor(READERS) as threads:
+        ordered = sorted(numbers)
+        return {number for number, whole in zip(ordered, threads.map(is_whole, ordered), strict=True) if whole}
 
 
 def counts_of(out: str, numbers: Iterable[int]) -> list[Counts]:

@@ -43,6 +43,9 @@ class Processor:
     def __call__(self, path: str) -> Row:
         nothing: Row = {"path": path, "error": None, "width": None, "height": None, "valid_pixels": None}
         nothing |= {"notes": [], "labels": None, "planes": []}
+        name = path.encode("utf-8", "backslashreplace").decode()
+        if name != path:
+            return nothing | {"path": name, "error": f"{name}: the name is not UTF-8, of which rows are; accepted: a file with such a name"}
         try:
             return nothing | self._found(path)
         except Exception as error:  # whatever a file or a store comes up with is of this frame alone
