@@ -158,7 +158,7 @@ def test_a_change_of_a_patch_is_noticed(size):
     depth = np.full(size, 2000, np.uint16)
     detector, random = depthplanes.Detector(), np.random.default_rng(1)
     detector(depth)
-    side = 2 * int(np.ceil(np.sqrt(depth.size / 2048)))
+    side = 2 * int(np.ceil(np.sqrt(depth.size / 512)))
     for _ in range(40):
         planes = detector(depth)
         v, u = (random.integers(max(1, length - side)) for length in size)
