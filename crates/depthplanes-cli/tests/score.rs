@@ -140,6 +140,16 @@ fn what_detect_finds_in_a_scene_is_scored_against_its_truth() {
 }
 
 #[test]
+fn a_partial_truth_is_told_of() {
+    let bench = bench("score_partial");
+    let truth: Vec<u8> = [0u16, 1, 1, 1, 65535, 65535].iter().flat_map(|label| label.to_be_bytes()).collect();
+    bench.write("partial.pgm", &[b"P5 3 2 65535\n".as_slice(), &truth].concat());
+    let ran = bench.run(&["score", "partial.pgm", "partial.pgm"]);
+    assert!(ran.code == Some(0) && ran.err.contains("`depthplanes eval real` counts its surfaces"), "{ran:?}");
+    assert_eq!(bench.run(&["score", "truth.pgm", "found.pgm"]).err, "");
+}
+
+#[test]
 fn a_map_taken_for_labels_is_remarked_on() {
     let bench = Bench::new("score_map");
     let mut map = b"P5 64 32 65535\n".to_vec();

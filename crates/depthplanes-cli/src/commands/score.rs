@@ -6,7 +6,7 @@ use crate::pairs::{self, Pair, Truth};
 use crate::patience::patiently;
 use crate::table::{Align, aligned, row};
 use crate::terminal::plain;
-use depthplanes::metrics::{Contingency, SegComp, Split, Tolerance};
+use depthplanes::metrics::{Contingency, NOT_PLANAR, SegComp, Split, Tolerance};
 use depthplanes::scene::Spec;
 use depthplanes_io::formats::DecodeOptions;
 use depthplanes_io::measures::{MEASURES, Measure, Scores, decimal, families};
@@ -52,11 +52,23 @@ fn score(pair: Pair, tolerance: Tolerance, truth_from: u16) -> Outcome<Scored> {
     }
     let table = Contingency::new(&truth.labels, &prediction.labels)?.truth_from(truth_from);
     warn_of_maps(&pair, &table);
+    tell_of_partial_truth(&pair, &table);
     Ok(Scored { pair, size, scores: Scores::of(&table, tolerance) })
 }
 
 /// More labels than anybody gives: a depth map that was taken for a label image.
 const MANY: usize = 1000;
+
+/// Says of a truth that is partial that another command counts by it.
+fn tell_of_partial_truth(pair: &Pair, table: &Contingency) {
+    if table.truth().iter().any(|region| region.label == NOT_PLANAR) {
+        note(&format!(
+            "{}: 65535 is taken for a plane here; if the truth is partial, 0 being not labelled and 65535 not planar, \
+             `depthplanes eval real` counts its surfaces (docs/metrics.md)",
+            pair.truth.name()
+        ));
+    }
+}
 
 fn warn_of_maps(pair: &Pair, table: &Contingency) {
     let sides = [(pair.truth.name(), table.truth()), (pair.prediction.display().to_string(), table.prediction())];
