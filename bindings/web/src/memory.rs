@@ -23,7 +23,7 @@ pub(crate) fn check_of_reading(bytes: usize) -> Result<()> {
 /// # Errors
 /// As [`check_of_reading`].
 pub(crate) fn check_of_scene(width: usize, height: usize) -> Result<()> {
-    check(64 * (width * height) as u64)
+    check(64 * width as u64 * height as u64)
 }
 
 /// Checks that planes can be found in a map of that size. Unlike elsewhere, memory that is reserved and not used counts: it is
