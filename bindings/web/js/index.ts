@@ -9,25 +9,25 @@
  * @module
  */
 
-import { InputError, Module, type MapOf, type Request, type Wasm } from "./module.js";
+import { bytesOf, copied, numbers, text, whole, type MapArray } from "./given.js";
+import { InputError } from "./error.js";
+import { Module, type MapOf, type Request, type Wasm } from "./module.js";
 import type { DetectorOptions, Reading, Search } from "./options.js";
 import type { Explanation, Plane, PlanesRecord } from "./results.js";
 import type { Extension, Method, OutputName, Row, Tables } from "./tables.js";
 import { inOptions } from "./words.js";
 
-export { InputError, type Wasm };
+export { InputError, type MapArray, type Wasm };
 export type * from "./options.js";
 export type * from "./results.js";
 export type * from "./tables.js";
 
-/** Numbers of a map, row by row, top row first. */
-export type MapArray =
-    | Uint8Array | Uint8ClampedArray | Int8Array | Uint16Array | Int16Array | Uint32Array | Int32Array | BigUint64Array | BigInt64Array
-    | Float32Array | Float64Array;
-
 /** A map that was read from a file, or made of a scene. */
 export class Frame {
-    /** The numbers, row by row; those of files keep what is in the file. */
+    /**
+     * The numbers, row by row, as they are in the file. They are a copy: what is written to them does not change the frame. To find
+     * planes in what was written, hand over the array: `detect(frame.depth, frame.width, frame.height)`.
+     */
     readonly depth: Uint8Array | Uint16Array | Float32Array;
     readonly width: number;
     readonly height: number;
@@ -52,8 +52,8 @@ export class Frame {
 
     /** @internal */
     constructor(module: Module, map: MapOf, bytes: Uint8Array, reading: Reading) {
-        [this.map, this.bytes, this.reading] = [map, bytes, reading];
-        const read = module.ask({ ask: "read", map, words: reading }, bytes);
+        [this.map, this.bytes, this.reading] = [map, bytes, copied("what is stated of the map", reading)];
+        const read = module.ask({ ask: "read", map, words: this.reading }, bytes);
         this.depth = read.depth;
         this.width = read.width;
         this.height = read.height;
@@ -66,7 +66,7 @@ export class Frame {
     }
 }
 
-/** The planes of a map, the largest first. */
+/** The planes of a map, the largest first. What is written to them changes no file of `encode`. */
 export class Planes {
     readonly width: number;
     readonly height: number;
@@ -106,7 +106,7 @@ export class Planes {
      * @throws {InputError} for a pixel outside of the map.
      */
     explain(u: number, v: number): Explanation {
-        for (const [name, given] of Object.entries({ u, v })) whole(name, given, 0);
+        for (const [what, given] of Object.entries({ u, v })) whole(what, given, 0);
         const { arrays, ...explanation } = this.#module.ask({ ask: { explain: [u, v] }, ...this.#request }, this.#bytes);
         explanation.verdict.text = inOptions(explanation.verdict.text);
         return explanation as Explanation;
@@ -119,17 +119,21 @@ export class Planes {
      * @throws {InputError} for an output or an extension that there is not, or that needs a camera.
      */
     encode(output: OutputName, extension: Extension): Uint8Array {
+        for (const [what, given] of Object.entries({ output, extension })) text(what, given);
         return this.#module.ask({ ask: { encode: [output, extension] }, ...this.#request }, this.#bytes).bytes;
     }
 }
 
 /** Finds planes in the maps of one camera. Keep it for all of them. */
 export class Detector {
+    /** A copy of what was given, which cannot be changed. */
+    readonly options: DetectorOptions;
     readonly #module: Module;
 
     /** @internal */
-    constructor(module: Module, readonly options: DetectorOptions = {}) {
-        module.ask({ ask: "check", words: options });
+    constructor(module: Module, options: DetectorOptions = {}) {
+        this.options = copied("the options", options);
+        module.ask({ ask: "check", words: this.options });
         this.#module = module;
     }
 
@@ -182,13 +186,12 @@ export class Depthplanes {
      * @throws {InputError} with what is wrong with it.
      */
     read(bytes: Uint8Array | ArrayBuffer, name = "bytes", reading: Reading = {}): Frame {
-        const copy = new Uint8Array(bytes instanceof ArrayBuffer ? bytes : numbers(bytes).bytes).slice();
-        return new Frame(this.#module, { file: name }, copy, reading);
+        return new Frame(this.#module, { file: text("the name", name) }, bytesOf(bytes), reading);
     }
 
     /** A synthetic scene, such as `"room:sensor=kinect,size=320x240"`; `tables()` lists `scenes` and `scene_sensors`. */
     scene(spec: string): Frame {
-        return new Frame(this.#module, { scene: spec }, new Uint8Array(0), {});
+        return new Frame(this.#module, { scene: text("the scene", spec) }, new Uint8Array(0), {});
     }
 
     /** The methods with their parameters; the first is the default. */
@@ -224,20 +227,4 @@ function tablesOf(module: Module): Tables {
         for (const parameter of parameters) parameter.name = parameter.name.replaceAll("-", "_");
     }
     return tables;
-}
-
-/** The bytes of an array, a copy, and the name of their type in NumPy's words. */
-function numbers(array: MapArray): { sample: string; bytes: Uint8Array } {
-    if (!ArrayBuffer.isView(array) || array instanceof DataView) {
-        const given = array === null ? "null" : Array.isArray(array) ? "an Array" : `of type ${typeof array}`;
-        throw new InputError(`the map is ${given}; accepted: a typed array, such as Uint16Array or Float32Array, or a Frame`);
-    }
-    const sample = array[Symbol.toStringTag].replace(/Clamped|Big|Array/g, "").toLowerCase();
-    return { sample, bytes: new Uint8Array(array.buffer, array.byteOffset, array.byteLength).slice() };
-}
-
-/** A whole number from a least one on. */
-function whole(name: string, given: number | undefined, least: number): number {
-    if (Number.isSafeInteger(given) && given! >= least) return given!;
-    throw new InputError(`${name} is ${given}; accepted: a whole number from ${least} on`);
 }

@@ -1,12 +1,8 @@
 // The WebAssembly module: requests go in, responses come out, each a head of JSON with numbers behind it.
 
 import { decode } from "../../../crates/depthplanes-serve/page/src/message.js";
+import { InputError } from "./error.js";
 import { inOptions } from "./words.js";
-
-/** Something was wrong with what was given; the message says what is accepted. */
-export class InputError extends Error {
-    override name = "InputError";
-}
 
 /** What a request is about: an array, a file, or a scene. */
 export type MapOf =
@@ -32,11 +28,15 @@ interface Exports {
 /** Where the module's bytes are. */
 export type Wasm = string | URL | Response | PromiseLike<Response> | BufferSource | WebAssembly.Module;
 
+/** Bytes that a module can address. What stops one that has used more than half of them is the lack of more. */
+const ALL = 2 ** 32;
 const NOTHING = new Uint8Array(0);
 const IMPORTS = { env: { now: () => performance.now() } };
 
 export class Module {
     private exports!: Exports;
+    /** Whether it has seen no map yet, and has all its memory: memory of WebAssembly grows and never shrinks. */
+    private isFresh = true;
 
     private constructor(private readonly compiled: WebAssembly.Module) {}
 
@@ -56,38 +56,41 @@ export class Module {
 
     /** Asks; the answer's bytes, a copy. */
     exchange(request: Request, bytes: Uint8Array = NOTHING): ArrayBuffer {
-        const text = new TextEncoder().encode(JSON.stringify(request, finite));
-        const length = 4 + text.length + bytes.length;
+        const text = new TextEncoder().encode(JSON.stringify(request));
+        const wasFresh = this.isFresh;
+        if (request.map) this.isFresh = false;
         try {
-            const { memory, respond, response } = this.exports;
-            const at = this.exports.request(length) >>> 0; // addresses come as signed numbers
-            if (at === 0) throw new InputError(`${length} bytes of memory are needed and cannot be had`);
-            new DataView(memory.buffer).setUint32(at, text.length, true);
-            const room = new Uint8Array(memory.buffer, at + 4, length - 4);
-            room.set(text);
-            room.set(bytes, text.length);
-            const size = respond() >>> 0;
-            const from = response() >>> 0;
-            return memory.buffer.slice(from, from + size) as ArrayBuffer; // memory may have grown, and then moved
+            return this.answer(text, bytes);
         } catch (error) {
             if (!(error instanceof WebAssembly.RuntimeError)) throw error;
-            // What it knew is lost, and no answer depends on that.
+            const used = this.exports.memory.buffer.byteLength;
+            // What it knew is lost, and no answer depends on that. Anew it has all its memory.
             this.use(new WebAssembly.Instance(this.compiled, IMPORTS));
-            throw new InputError(`the module had to be started anew (${error.message}): most likely the map is too large for its memory`);
+            if (!wasFresh) return this.exchange(request, bytes);
+            throw new InputError(used > ALL / 2
+                ? `more memory is needed than the ${Math.ceil(ALL / 1e6)} MB of a WebAssembly module; accepted: a smaller map`
+                : `the module stopped and was started anew (${error.message})`);
         }
+    }
+
+    private answer(text: Uint8Array, bytes: Uint8Array): ArrayBuffer {
+        const { memory, request, respond, response } = this.exports;
+        const length = 4 + text.length + bytes.length;
+        const at = request(length) >>> 0; // addresses come as signed numbers
+        if (at === 0) throw new WebAssembly.RuntimeError(`no memory for ${length} bytes`);
+        new DataView(memory.buffer).setUint32(at, text.length, true);
+        const room = new Uint8Array(memory.buffer, at + 4, length - 4);
+        room.set(text);
+        room.set(bytes, text.length);
+        const size = respond() >>> 0;
+        const from = response() >>> 0;
+        return memory.buffer.slice(from, from + size) as ArrayBuffer; // memory may have grown, and then moved
     }
 
     private use(instance: WebAssembly.Instance): void {
         this.exports = instance.exports as unknown as Exports;
+        this.isFresh = true;
     }
-}
-
-/** JSON has no numbers that are not finite. */
-function finite(name: string, value: unknown): unknown {
-    if (typeof value === "number" && !Number.isFinite(value)) {
-        throw new InputError(`${name} is ${value}; accepted: a finite number`);
-    }
-    return value;
 }
 
 async function compile(wasm: Wasm): Promise<WebAssembly.Module> {

@@ -4,11 +4,12 @@ import { facts } from "../../../crates/depthplanes-serve/page/src/panels.js";
 import { node } from "../../../crates/depthplanes-serve/page/src/sliders.js";
 import { fieldOf } from "../js/words.ts";
 import { moreFields, numbers } from "./fields.js";
+import { contentOf } from "./opened.js";
 
 export class Choices {
     /** `want` takes how planes are looked for, `wantMap` what is stated of the map, `giveUp()` is that a map that was refused is not
-     * wanted any more, `check(camera)` fails unless a text states a camera, and `fail` is told why a file was not read. */
-    constructor(element, { want, wantMap, giveUp, check, fail }) {
+     * wanted any more, `check(camera)` fails unless a text states a camera, and `openCamera` takes a camera file. */
+    constructor(element, { want, wantMap, giveUp, check, openCamera }) {
         const of = id => element.querySelector(`#${id}`);
         Object.assign(this, { wantMap, check, method: of("method"), curved: of("curved"), inUse: of("in-use"), refused: of("refused"), carried: of("carried") });
         this.names = new Map(); // of camera files, by their texts
@@ -31,20 +32,16 @@ export class Choices {
         ];
         const file = of("camera-file");
         of("camera-open").onclick = () => file.click();
-        file.onchange = async () => {
+        file.onchange = () => {
             const [chosen] = file.files;
             file.value = "";
-            try {
-                if (chosen) this.read(await this.cameraOf(chosen));
-            } catch (error) {
-                fail(error.message);
-            }
+            if (chosen) openCamera(chosen);
         };
     }
 
     /** What a camera file states; fails with its name and with words. */
     async cameraOf(file) {
-        const camera = await file.text();
+        const camera = await contentOf(file, "text");
         await this.check(camera).catch(error => {
             throw new Error(`${file.name}: ${error.message}`);
         });

@@ -10,7 +10,8 @@ import { Choices } from "./choices.js";
 import { Client } from "./client.js";
 import { offer } from "./downloads.js";
 import { keys } from "./keys.js";
-import { sorted } from "./opened.js";
+import { contentOf, sorted } from "./opened.js";
+import { Opens } from "./opens.js";
 import { arrange } from "./layout.js";
 
 const FIRST = "room:sensor=kinect";
@@ -24,7 +25,7 @@ const main = document.querySelector("main");
 /* global WORKER: the text of the worker's script */
 const client = new Client(WORKER);
 /** What is shown: `state` made `frame`; `due` is being found, `wanted` comes next, and `refused` is a map, or what was stated of one,
- * that waits until that is mended. */
+ * that waits until that is mended. Wishes have the number of what was opened last when they came. */
 const page = { tables: null, state: NOTHING, due: null, wanted: null, refused: null, isBusy: false, frame: null, serial: 0, cameras: 0, chosen: null };
 
 const view2d = new View2d(find("view2d"), at => look(at));
@@ -33,7 +34,8 @@ const pick = new Pick(find("pixel"), choose, ask);
 const setParameter = (name, value) => want(({ parameters }) => ({ parameters: { ...parameters, [name]: value } }));
 const sliders = new Sliders(find("parameters"), setParameter, () => want({ parameters: {} }));
 const stages = new Stages(find("stages"), find("total"));
-const choices = new Choices(find("choices"), { want, wantMap, giveUp, check, fail: banner });
+const choices = new Choices(find("choices"), { want, wantMap, giveUp, check, openCamera });
+const opens = new Opens(showReading, banner);
 globalThis.depthplanes = Object.assign(page, { view2d, view3d, client }); // for the browser's console, and for tests
 
 /** What is stated of a map; size and type of files without a header are not those of others. */
@@ -64,7 +66,7 @@ function wantMap(change) {
 
 /** While something is found only the newest wish waits. */
 function next(wanted) {
-    page.wanted = wanted;
+    page.wanted = { ...wanted, opened: opens.number };
     if (!page.isBusy) work();
 }
 
@@ -81,18 +83,29 @@ async function work() {
     while (page.wanted) {
         const wanted = page.due = page.wanted;
         page.wanted = null;
+        showReading();
+        const isLast = () => wanted.opened === opens.number;
         try {
             await show(wanted);
-            banner(page.refused?.why);
+            if (isLast()) banner(page.refused?.why);
         } catch (error) {
-            banner(error.message);
-            if (isOther(wanted)) page.refused = { ...wanted, why: error.message };
+            if (isLast()) banner(error.message);
+            if (isLast() && isOther(wanted)) page.refused = { ...wanted, why: error.message };
             if (!page.wanted) showState(); // controls of the method go back
         }
     }
     find("speed").classList.remove("busy");
     page.due = null;
     page.isBusy = false;
+    showReading();
+}
+
+/** Says which file is being read. */
+function showReading() {
+    const due = page.due && page.due.map !== page.state.map ? page.due.map.file : undefined;
+    const name = opens.name ?? due;
+    find("reading").hidden = name === undefined;
+    find("reading").textContent = name === undefined ? "" : `reading ${name}`;
 }
 
 /** Whether it is about another map than the one that is shown, or states something else of it. */
@@ -209,11 +222,28 @@ function check(camera) {
 }
 
 /** Reads a map, a camera file, or both. */
-async function open(...files) {
-    const { map, camera } = await sorted(files, page.tables.formats, check);
-    const own = camera && await choices.cameraOf(camera);
-    if (!map) return choices.read(own);
-    openMap({ map: { file: map.name }, bytes: new Uint8Array(await map.arrayBuffer()) }, own);
+function open(...files) {
+    const read = async () => {
+        const { map, camera } = await sorted(files, page.tables.formats, check);
+        const own = camera && await choices.cameraOf(camera);
+        return { own, map: map && { map: { file: map.name }, bytes: new Uint8Array(await contentOf(map, "arrayBuffer")) } };
+    };
+    return opens.run(files.map(({ name }) => name).join(", "), read, ({ own, map }) => map ? openMap(map, own) : choices.read(own));
+}
+
+function openCamera(file) {
+    opens.run(file.name, () => choices.cameraOf(file), own => choices.read(own));
+}
+
+function openScene(scene) {
+    opens.begin();
+    openMap({ map: { scene }, bytes: undefined });
+}
+
+/** What is said of files before they are read. */
+function failToOpen(text) {
+    opens.begin();
+    banner(text);
 }
 
 /** Shows another map. What was stated for the one before counts for it as well, and is marked; `own` is stated for itself. */
@@ -249,8 +279,8 @@ for (const [name, view] of [["outlines", view2d], ["ids", view2d], ["floor", vie
 find("banner-close").onclick = () => banner(null);
 find("view-reset").onclick = () => view3d.reset();
 find("licences").onclick = () => find("licence-text").showModal();
-find("sample").onchange = ({ target }) => target.value && openMap({ map: { scene: target.value }, bytes: undefined });
-new Drop({ zone: find("drop"), button: find("open"), input: find("file") }, () => MOST_BYTES, banner, open, 2);
+find("sample").onchange = ({ target }) => target.value && openScene(target.value);
+new Drop({ zone: find("drop"), button: find("open"), input: find("file") }, () => MOST_BYTES, failToOpen, open, 2);
 new ResizeObserver(() => {
     if (!page.frame) return;
     arrange(main, page.frame.map);

@@ -16,6 +16,13 @@ export async function sorted(files, formats, check) {
     return { map: maps[0], camera };
 }
 
+/** What stands in a file: its `text` or its `arrayBuffer`. Fails with words, for instance of a folder, which browsers drop like a file. */
+export function contentOf(file, kind) {
+    return file[kind]().catch(() => {
+        throw new Error(`${file.name}: this cannot be read; accepted: files that are still there, and no folders`);
+    });
+}
+
 async function firstWith(files, check) {
     for (const file of files) {
         const holds = await file.text().then(check).then(() => true, () => false);

@@ -1,12 +1,13 @@
 //! How planes are looked for: words of JavaScript as a detector, with its memory.
 
-use crate::error::{InputError, Result, check_memory};
+use crate::error::{InputError, Result};
+use crate::memory::check_of_detection;
 use crate::options;
 use crate::reading::{Words, take};
 use depthplanes::methods::{self, MethodInfo};
 use depthplanes::{Coplanar, Detection, Detector, Error};
 use depthplanes_io::outputs::{Report, explanation_record};
-use depthplanes_io::{Frame, doubts, memory};
+use depthplanes_io::{Frame, doubts};
 use serde_json::Value;
 
 /// A detector of a method, and what it was made of.
@@ -19,7 +20,7 @@ pub(crate) struct Finder {
     detector: Detector,
     /// What it found last.
     pub(crate) found: Detection,
-    /// Pixels of the largest map that there is memory for.
+    /// Pixels of the largest map that it has seen.
     pixels: usize,
 }
 
@@ -62,7 +63,8 @@ impl Finder {
     /// What the library says of the map; too little memory.
     pub(crate) fn find(&mut self, frame: &Frame, observer: &mut (dyn FnMut(&'static str) + Send)) -> Result<()> {
         if frame.width * frame.height > self.pixels {
-            check_memory(memory::of_detection(self.method, frame.width, frame.height))?;
+            check_of_detection(self.method, frame.width, frame.height)?;
+            *self = Finder::new(&self.words)?; // the memory for smaller maps is given back
             self.pixels = frame.width * frame.height;
         }
         self.detector.set_sensor(frame.sensor);

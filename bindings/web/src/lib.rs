@@ -9,6 +9,7 @@ mod clock;
 mod error;
 mod finder;
 mod map;
+mod memory;
 mod options;
 mod reading;
 mod request;

@@ -1,6 +1,7 @@
 //! The map that a request is about.
 
-use crate::error::{Result, check_memory};
+use crate::error::Result;
+use crate::memory::{check_of_reading, check_of_scene};
 use depthplanes::ValueKind;
 use depthplanes::scene::Spec;
 use depthplanes_io::{Frame, ReadOptions, frame_of_samples};
@@ -42,20 +43,18 @@ impl MapOf {
     /// # Errors
     /// Those of the readers and of scenes.
     pub(crate) fn frame(&self, bytes: &[u8], options: &ReadOptions) -> Result<Frame> {
-        let needed = 6 * bytes.len() as u64; // as for files: `memory::check_of_file`
         match self {
             MapOf::File(name) => {
-                check_memory([needed; 2])?;
+                check_of_reading(bytes.len())?;
                 Ok(depthplanes_io::decode(bytes, name, options)?)
             }
             MapOf::Array { sample, width, height } => {
-                check_memory([needed; 2])?;
+                check_of_reading(bytes.len())?;
                 Ok(frame_of_samples(bytes, sample, (*width, *height), options)?)
             }
             MapOf::Scene(spec) => {
                 let spec = spec.parse::<Spec>()?;
-                let needed = 64 * (spec.width * spec.height) as u64;
-                check_memory([needed; 2])?;
+                check_of_scene(spec.width, spec.height)?;
                 let mut frame = Frame::from(spec.frame()?);
                 if *options != ReadOptions::default() {
                     let note = "a synthetic scene knows its own unit and camera: what is stated of reading is not used";

@@ -87,6 +87,27 @@ test("no answer depends on the one before, nor on what is written to the array s
     assert.equal(first.explain(320, 400).verdict.kind, "plane");
 });
 
+test("options and frames are copies: what is written to them later changes no result", () => {
+    const options = { min_pixels: 100, camera: [...CAMERA] };
+    const detector = new dp.Detector(options);
+    const reading = { unit: "mm" };
+    const scene = dp.scene("room:sensor=kinect");
+    const frame = dp.read(WRITERS.pnm[1](scene), "room.pgm", reading);
+    const [found, read] = [detector.detect(scene.depth, scene.width, scene.height), new dp.Detector({ min_pixels: 100 }).detect(frame)];
+    const documents = [found, read].map(planes => planes.encode("planes", "json"));
+    Object.assign(options, { min_pixels: 3000, method: "ngaf" });
+    options.camera[0] = 1;
+    reading.unit = "cm";
+    frame.depth.fill(0);
+    assert.deepEqual([found, read].map(planes => planes.encode("planes", "json")), documents);
+    assert.deepEqual(detector.options, { min_pixels: 100, camera: CAMERA });
+    assert.throws(() => detector.options.min_pixels = 3000, TypeError);
+    assert.throws(() => detector.options.camera[0] = 1, TypeError);
+    assert.deepEqual(detector.detect(scene.depth, scene.width, scene.height).labels, found.labels);
+    assert.deepEqual(new dp.Detector({ min_pixels: 100 }).detect(frame).labels, read.labels);
+    assert.equal(detector.detect(frame.depth, frame.width, frame.height).planes.length, 0);
+});
+
 test("what is wrong is said in the names of options", () => withFolder(async folder => {
     const flat = new Uint16Array(64 * 48).fill(1000);
     const detector = new dp.Detector();
@@ -102,6 +123,24 @@ test("what is wrong is said in the names of options", () => withFolder(async fol
     refused(() => new dp.Detector({ min_pixels: -5 }), /`min_pixels`.*-5.*a whole number from/);
     refused(() => new dp.Detector({ min_pixels: "many" }), /min_pixels is "many"; accepted: a number/);
     refused(() => new dp.Detector({ min_pixels: NaN }), /min_pixels is NaN; accepted: a finite number/);
+    refused(() => new dp.Detector({ min_pixels: 900n }), /^min_pixels is the BigInt 900n; accepted: a number/);
+    refused(() => new dp.Detector({ min_pixels: () => 900 }), /^min_pixels is of type function; accepted: a number/);
+    const holdsItself = {};
+    holdsItself.camera = holdsItself;
+    refused(() => new dp.Detector(holdsItself), /^the options: an object that holds itself.*accepted: names with numbers/);
+    for (const [given, words] of [[null, "null"], [[9], "an Array"], ["mm", 'the string "mm"'], [9, "9"]]) {
+        refused(() => new dp.Detector(given), new RegExp(`^the options: ${words}; accepted: an object`));
+    }
+    refused(() => dp.read(new Uint8Array(10), "map.png", null), /^what is stated of the map: null; accepted: an object/);
+    refused(() => dp.read(new Uint8Array(10), 5), /^the name is 5; accepted: a string/);
+    refused(() => dp.scene(), /^the scene is undefined; accepted: a string/);
+    const gone = new Uint16Array(64 * 48);
+    structuredClone(gone.buffer, { transfer: [gone.buffer] });
+    refused(() => detector.detect(gone, 64, 48), /^the array has no memory any more: it was transferred/);
+    refused(() => dp.read(gone.buffer), /^the array has no memory any more: it was transferred/);
+    refused(() => detector.detect(flat, "64", "48"), /^width is the string "64"; accepted: a whole number from 1 on/);
+    refused(() => detector.detect(flat, 64, 48).explain(1n, 1), /^u is the BigInt 1n; accepted: a whole number/);
+    refused(() => detector.detect(flat, 64, 48).encode("labels"), /^extension is undefined; accepted: a string/);
     refused(() => new dp.Detector({ theta: 1 }), /no option `theta`; the method `planar` has no such parameter, ngaf has; accepted: .*min_pixels/);
     refused(() => new dp.Detector({ camera: [580, 580] }), /camera is \[580,580\]; accepted: \[fx, fy, cx, cy\]/);
     refused(() => new dp.Detector({ camera: "no camera" }), /camera/);
@@ -218,10 +257,16 @@ test("tables are the program's", () => {
 
 test("a map that is too large is refused, and the next one is not", () => {
     const detector = new dp.Detector();
-    const side = 5000;
-    assert.throws(() => detector.detect(new Uint16Array(side * side).fill(1000), side, side), {
-        name: "InputError", message: /\d+ MB of memory are needed; accepted: what fits/,
-    });
+    const found = (width, height) => {
+        const { labels, planes } = detector.detect(new Uint16Array(width * height).fill(1000), width, height);
+        return [labels.length, planes.length];
+    };
+    const message = /^(\d+ MB of memory are needed; accepted: what fits into|more memory is needed than) the 4295 MB of a WebAssembly module/;
+    for (const [width, height] of [[5000, 5000], [4000, 3900]]) {
+        assert.throws(() => found(width, height), { name: "InputError", message }, `${width} x ${height}`);
+    }
+    // Each fits into a module, and with what the one before has left it does not.
+    for (const [width, height] of [[3840, 2160], [4096, 2160], [2160, 4096]]) assert.deepEqual(found(width, height), [width * height, 1]);
     assert.equal(detector.detect(new Uint16Array(4096).fill(1000), 64, 64).planes.length, 1);
 });
 
@@ -249,7 +294,7 @@ for (const page of ["docs/browser.md", "bindings/web/README.md"]) {
     }));
 }
 
-test("a frame of 640 x 480 takes less than 25 ms", { skip }, async t => {
+test("a frame of 640 x 480 takes less than 75 ms", { skip }, async t => {
     const frames = await vga();
     const detector = new dp.Detector();
     const times = [];
@@ -262,5 +307,5 @@ test("a frame of 640 x 480 takes less than 25 ms", { skip }, async t => {
     }
     const median = times.sort((a, b) => a - b)[times.length >> 1];
     t.diagnostic(`${median.toFixed(2)} ms, median of ${times.length} detections of ${frames.length} recorded maps`);
-    assert.ok(median < 75, `${median} ms`); // machines of tests are busy
+    assert.ok(median < 75, `${median} ms`); // a quiet machine takes a tenth of that, and those of tests are busy
 });

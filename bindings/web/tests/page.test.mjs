@@ -88,7 +88,7 @@ test("wishes that come while a map is read are all kept", { skip }, () => withPa
     assert.match(await page.locator("#frame-name").textContent(), /^felix\.png/);
 }));
 
-test("a frame of 640 x 480 takes less than 25 ms in the page", { skip }, t => withPage(async page => {
+test("a frame of 640 x 480 takes less than 75 ms in the page", { skip }, t => withPage(async page => {
     await open(page, join(DATA, "gt_real/lpvo_hall_125.depth.png"));
     const times = await page.evaluate(async () => {
         const { client, state } = window.depthplanes;
@@ -102,7 +102,7 @@ test("a frame of 640 x 480 takes less than 25 ms in the page", { skip }, t => wi
         return times.sort((a, b) => a - b);
     });
     t.diagnostic(`${times[15].toFixed(2)} ms, median of ${times.length}`);
-    assert.ok(times[15] < 75, `${times[15]} ms`); // machines of tests are busy
+    assert.ok(times[15] < 75, `${times[15]} ms`); // a quiet machine takes a tenth of that, and those of tests are busy
 }));
 
 test("a slider changes the planes, and what is not accepted is said", () => withPage(async page => {
