@@ -131,8 +131,10 @@ export class View3d {
             group.clear();
         }
         if (!ground?.floor) return;
-        if (this.sectors) this.fan.add(...ground.sectors.filter(sector => sector.free_m > 0).map(sectorMesh));
-        if (this.obstacles) this.fences.add(...fences(this.frame, this.rays).map(fence));
+        const free = this.sectors ? ground.sectors.filter(sector => sector.free_m > 0) : [];
+        free.forEach(sector => this.fan.add(sectorMesh(sector)));
+        const around = this.obstacles ? fences(this.frame, this.rays) : [];
+        around.forEach(obstacle => this.fences.add(fence(obstacle)));
     }
 
     /** Draws once, as soon as the browser draws. */
