@@ -301,7 +301,7 @@ pub(super) fn source() -> Arg {
 /// Those of several videos.
 pub(super) fn sources() -> Arg {
     let several = "With --out-dir several of them, and patterns such as 'walks/*.mcap'";
-    source().num_args(1..).help(format!("{SOURCE}. {several}"))
+    source().num_args(1..).long_help(format!("{SOURCE}. {several}"))
 }
 
 /// A flag that takes a whole number from 1 to [`MOST`].
