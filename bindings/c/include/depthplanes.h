@@ -651,72 +651,6 @@ void dp_detector_free(struct dp_detector *detector);
 const char *dp_error(const struct dp_detector *detector);
 
 /**
- * States a number by name: a parameter of the method (`dp_methods`), or
- *
- * - `scale`, `depth-scale`: map units per metre, or metres per map unit
- * - `missing`: a value that means "not measured", beside 0, NaN and infinity
- * - `focal` (pixels), `baseline` (metres), `doffs` (pixels): the stereo rig; the numbers are then disparities
- * - `disparity`, `ray-distance`: 1 if the numbers are disparities, or distances along the rays
- * - `curved`: 1 if curved surfaces are wanted as well
- * - `threads`: 1 and up; the answer is the same for any number
- */
-enum dp_status dp_detector_set(struct dp_detector *detector, const char *name, double value);
-
-/**
- * As `dp_detector_set`, of a number that is written as text, as on a command line.
- */
-enum dp_status dp_detector_set_text(struct dp_detector *detector, const char *name, const char *value);
-
-/**
- * States the sensor by name (`dp_sensors`), such as "kinect1": its unit, its nominal camera and its noise.
- */
-enum dp_status dp_detector_set_sensor(struct dp_detector *detector, const char *sensor);
-
-/**
- * States what the numbers mean, by name (`dp_units`): "mm", "m", "tum", "disparity" and others. Without it 16-bit numbers are
- * millimetres, floats are metres, and 8-bit numbers are grey levels without a unit.
- */
-enum dp_status dp_detector_set_unit(struct dp_detector *detector,
-                                    const char *unit);
-
-/**
- * States the camera: focal lengths and principal point in pixels, centres of pixels at whole numbers. Without a camera planes
- * have labels and no metres.
- */
-enum dp_status dp_detector_set_camera(struct dp_detector *detector,
-                                      double fx,
-                                      double fy,
-                                      double cx,
-                                      double cy);
-
-/**
- * States the camera, its lens and its stereo rig by a file of ROS, OpenCV, RealSense, COLMAP, KITTI and many more programs.
- */
-enum dp_status dp_detector_set_camera_file(struct dp_detector *detector,
-                                           const char *path);
-
-/**
- * States that only values from `low` to `high`, in map units, are measurements.
- */
-enum dp_status dp_detector_set_valid_range(struct dp_detector *detector, double low, double high);
-
-/**
- * Joins pieces of one plane whose normals differ by no more than that and that lie within that distance of one plane. Needs
- * unit and camera.
- */
-enum dp_status dp_detector_set_merge_coplanar(struct dp_detector *detector,
-                                              double angle_deg,
-                                              double distance_m);
-
-/**
- * Makes outlines of all planes from now on, which takes time: rings within `tolerance_px` pixels of the planes' borders (1.5
- * makes lines of the steps along straight edges, 0 keeps every corner), without holes of fewer than `min_hole_px` pixels.
- */
-enum dp_status dp_detector_set_outlines(struct dp_detector *detector,
-                                        double tolerance_px,
-                                        size_t min_hole_px);
-
-/**
  * Finds the planes of a map and writes them to a detection, whatever it held before. If that fails, it holds nothing.
  */
 enum dp_status dp_detector_detect(struct dp_detector *detector,
@@ -831,6 +765,72 @@ const struct dp_sector *dp_ground_sectors(const struct dp_ground *ground,
  */
 const struct dp_step *dp_ground_steps(const struct dp_ground *ground,
                                       size_t *count);
+
+/**
+ * States a number by name: a parameter of the method (`dp_methods`), or
+ *
+ * - `scale`, `depth-scale`: map units per metre, or metres per map unit
+ * - `missing`: a value that means "not measured", beside 0, NaN and infinity
+ * - `focal` (pixels), `baseline` (metres), `doffs` (pixels): the stereo rig; the numbers are then disparities
+ * - `disparity`, `ray-distance`: 1 if the numbers are disparities, or distances along the rays
+ * - `curved`: 1 if curved surfaces are wanted as well
+ * - `threads`: 1 and up; the answer is the same for any number
+ */
+enum dp_status dp_detector_set(struct dp_detector *detector, const char *name, double value);
+
+/**
+ * As `dp_detector_set`, of a number that is written as text, as on a command line.
+ */
+enum dp_status dp_detector_set_text(struct dp_detector *detector, const char *name, const char *value);
+
+/**
+ * States the sensor by name (`dp_sensors`), such as "kinect1": its unit, its nominal camera and its noise.
+ */
+enum dp_status dp_detector_set_sensor(struct dp_detector *detector, const char *sensor);
+
+/**
+ * States what the numbers mean, by name (`dp_units`): "mm", "m", "tum", "disparity" and others. Without it 16-bit numbers are
+ * millimetres, floats are metres, and 8-bit numbers are grey levels without a unit.
+ */
+enum dp_status dp_detector_set_unit(struct dp_detector *detector,
+                                    const char *unit);
+
+/**
+ * States the camera: focal lengths and principal point in pixels, centres of pixels at whole numbers. Without a camera planes
+ * have labels and no metres.
+ */
+enum dp_status dp_detector_set_camera(struct dp_detector *detector,
+                                      double fx,
+                                      double fy,
+                                      double cx,
+                                      double cy);
+
+/**
+ * States the camera, its lens and its stereo rig by a file of ROS, OpenCV, RealSense, COLMAP, KITTI and many more programs.
+ */
+enum dp_status dp_detector_set_camera_file(struct dp_detector *detector,
+                                           const char *path);
+
+/**
+ * States that only values from `low` to `high`, in map units, are measurements.
+ */
+enum dp_status dp_detector_set_valid_range(struct dp_detector *detector, double low, double high);
+
+/**
+ * Joins pieces of one plane whose normals differ by no more than that and that lie within that distance of one plane. Needs
+ * unit and camera.
+ */
+enum dp_status dp_detector_set_merge_coplanar(struct dp_detector *detector,
+                                              double angle_deg,
+                                              double distance_m);
+
+/**
+ * Makes outlines of all planes from now on, which takes time: rings within `tolerance_px` pixels of the planes' borders (1.5
+ * makes lines of the steps along straight edges, 0 keeps every corner), without holes of fewer than `min_hole_px` pixels.
+ */
+enum dp_status dp_detector_set_outlines(struct dp_detector *detector,
+                                        double tolerance_px,
+                                        size_t min_hole_px);
 
 /**
  * All methods, the usual one first. Their number is written to `count`, unless that is null.

@@ -11,9 +11,9 @@ use crate::tracker::dp_tracker;
 use depthplanes::methods;
 use depthplanes::outline::Outliner;
 use depthplanes::track::CameraPose;
-use depthplanes::{Coplanar, Detection, Detector, Explanation, Intrinsics, Sensor, ValueKind, with_view};
+use depthplanes::{Detection, Detector, Explanation, Sensor, ValueKind, with_view};
 use depthplanes_io::outputs::Report;
-use depthplanes_io::{Frame, camera_file, doubts, encoding, memory, presets};
+use depthplanes_io::{Frame, doubts, memory};
 use std::ffi::{CString, c_char};
 use std::mem::MaybeUninit;
 
@@ -22,7 +22,7 @@ use std::mem::MaybeUninit;
 #[derive(Default)]
 pub struct dp_detector {
     settings: Settings,
-    outliner: Option<Outliner>,
+    pub(crate) outliner: Option<Outliner>,
     /// Made anew after something was stated.
     reader: Option<Reader>,
     idle: Option<Detector>,
@@ -33,7 +33,7 @@ pub struct dp_detector {
 }
 
 /// Does something with a detector, which keeps the text of an error.
-fn with(detector: Option<&mut dp_detector>, act: impl FnOnce(&mut dp_detector) -> Result<()>) -> dp_status {
+pub(crate) fn with(detector: Option<&mut dp_detector>, act: impl FnOnce(&mut dp_detector) -> Result<()>) -> dp_status {
     let Some(detector) = detector else {
         let error = Error::null("detector");
         keep_last(&error);
@@ -49,7 +49,7 @@ fn with(detector: Option<&mut dp_detector>, act: impl FnOnce(&mut dp_detector) -
 }
 
 /// States something of a detector.
-fn state(detector: Option<&mut dp_detector>, act: impl FnOnce(&mut Settings) -> Result<()>) -> dp_status {
+pub(crate) fn state(detector: Option<&mut dp_detector>, act: impl FnOnce(&mut Settings) -> Result<()>) -> dp_status {
     with(detector, |detector| {
         act(&mut detector.settings)?;
         (detector.reader, detector.idle) = (None, None);
@@ -222,132 +222,6 @@ pub extern "C" fn dp_detector_free(detector: Option<Box<dp_detector>>) {
 #[unsafe(no_mangle)]
 pub extern "C" fn dp_error(detector: Option<&dp_detector>) -> *const c_char {
     detector.map_or_else(last, |detector| detector.error.as_ptr())
-}
-
-/// States a number by name: a parameter of the method (`dp_methods`), or
-///
-/// - `scale`, `depth-scale`: map units per metre, or metres per map unit
-/// - `missing`: a value that means "not measured", beside 0, NaN and infinity
-/// - `focal` (pixels), `baseline` (metres), `doffs` (pixels): the stereo rig; the numbers are then disparities
-/// - `disparity`, `ray-distance`: 1 if the numbers are disparities, or distances along the rays
-/// - `curved`: 1 if curved surfaces are wanted as well
-/// - `threads`: 1 and up; the answer is the same for any number
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn dp_detector_set(
-    detector: Option<&mut dp_detector>,
-    name: *const c_char,
-    value: f64,
-) -> dp_status {
-    // SAFETY: it is null or a text of C.
-    state(detector, |settings| settings.set(unsafe { text("name", name) }?, value))
-}
-
-/// As `dp_detector_set`, of a number that is written as text, as on a command line.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn dp_detector_set_text(
-    detector: Option<&mut dp_detector>,
-    name: *const c_char,
-    value: *const c_char,
-) -> dp_status {
-    state(detector, |settings| {
-        // SAFETY: they are null or texts of C.
-        let [name, value] = [("name", name), ("value", value)].map(|(name, pointer)| unsafe { text(name, pointer) });
-        settings.set_text(name?, value?)
-    })
-}
-
-/// States the sensor by name (`dp_sensors`), such as "kinect1": its unit, its nominal camera and its noise.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn dp_detector_set_sensor(
-    detector: Option<&mut dp_detector>,
-    sensor: *const c_char,
-) -> dp_status {
-    state(detector, |settings| {
-        // SAFETY: it is null or a text of C.
-        let sensor = presets::by_name(unsafe { text("sensor", sensor) }?)?;
-        settings.reading.preset = Some(sensor.name.into());
-        Ok(())
-    })
-}
-
-/// States what the numbers mean, by name (`dp_units`): "mm", "m", "tum", "disparity" and others. Without it 16-bit numbers are
-/// millimetres, floats are metres, and 8-bit numbers are grey levels without a unit.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn dp_detector_set_unit(detector: Option<&mut dp_detector>, unit: *const c_char) -> dp_status {
-    state(detector, |settings| {
-        // SAFETY: it is null or a text of C.
-        let unit = encoding::by_name(unsafe { text("unit", unit) }?)?;
-        settings.reading.encoding = Some(unit.name.into());
-        Ok(())
-    })
-}
-
-/// States the camera: focal lengths and principal point in pixels, centres of pixels at whole numbers. Without a camera planes
-/// have labels and no metres.
-#[unsafe(no_mangle)]
-pub extern "C" fn dp_detector_set_camera(
-    detector: Option<&mut dp_detector>,
-    fx: f64,
-    fy: f64,
-    cx: f64,
-    cy: f64,
-) -> dp_status {
-    state(detector, |settings| {
-        settings.reading.intrinsics = Some(Intrinsics::new(fx, fy, cx, cy)?);
-        Ok(())
-    })
-}
-
-/// States the camera, its lens and its stereo rig by a file of ROS, OpenCV, RealSense, COLMAP, KITTI and many more programs.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn dp_detector_set_camera_file(
-    detector: Option<&mut dp_detector>,
-    path: *const c_char,
-) -> dp_status {
-    state(detector, |settings| {
-        // SAFETY: it is null or a text of C.
-        let camera = camera_file::read_camera(unsafe { text("path", path) }?)?;
-        settings.reading = std::mem::take(&mut settings.reading).camera(&camera);
-        Ok(())
-    })
-}
-
-/// States that only values from `low` to `high`, in map units, are measurements.
-#[unsafe(no_mangle)]
-pub extern "C" fn dp_detector_set_valid_range(detector: Option<&mut dp_detector>, low: f64, high: f64) -> dp_status {
-    state(detector, |settings| {
-        let range = (low < high).then_some((low, high)).ok_or(depthplanes::Error::ValidRange { low, high })?;
-        settings.reading.valid_range = Some(range);
-        Ok(())
-    })
-}
-
-/// Joins pieces of one plane whose normals differ by no more than that and that lie within that distance of one plane. Needs
-/// unit and camera.
-#[unsafe(no_mangle)]
-pub extern "C" fn dp_detector_set_merge_coplanar(
-    detector: Option<&mut dp_detector>,
-    angle_deg: f64,
-    distance_m: f64,
-) -> dp_status {
-    state(detector, |settings| {
-        settings.coplanar = Some(Coplanar::new(angle_deg, distance_m)?);
-        Ok(())
-    })
-}
-
-/// Makes outlines of all planes from now on, which takes time: rings within `tolerance_px` pixels of the planes' borders (1.5
-/// makes lines of the steps along straight edges, 0 keeps every corner), without holes of fewer than `min_hole_px` pixels.
-#[unsafe(no_mangle)]
-pub extern "C" fn dp_detector_set_outlines(
-    detector: Option<&mut dp_detector>,
-    tolerance_px: f64,
-    min_hole_px: usize,
-) -> dp_status {
-    with(detector, |detector| {
-        detector.outliner = Some(Outliner::new(tolerance_px)?.min_hole_px(min_hole_px));
-        Ok(())
-    })
 }
 
 /// Finds the planes of a map and writes them to a detection, whatever it held before. If that fails, it holds nothing.

@@ -15,5 +15,6 @@ mod outlines;
 mod plane;
 mod reader;
 mod settings;
+mod stated;
 mod tables;
 mod tracker;
