@@ -13,6 +13,7 @@ use crate::may_close::MayClose;
 use crate::tally::Tally;
 use crate::terminal::plain;
 use crate::{pool, shard, signals};
+use depthplanes_video::StatedUp;
 use serde_json::json;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -53,6 +54,11 @@ pub(super) fn run(wanted: &Track, folder: &Path, out: &mut dyn Write) -> Outcome
 /// All that results depend on.
 fn settings(plan: &Plan<'_>) -> serde_json::Value {
     let Plan { wanted, recipe, .. } = plan;
+    let (up, world_up) = match wanted.up {
+        StatedUp::Nothing => (None, None),
+        StatedUp::Camera(up) => (Some(up), None),
+        StatedUp::World(up) => (None, Some(up)),
+    };
     json!({
         "command": "track",
         "version": env!("CARGO_PKG_VERSION"),
@@ -62,7 +68,8 @@ fn settings(plan: &Plan<'_>) -> serde_json::Value {
         "noise-table": wanted.noise_table,
         "files": checksums(wanted.reading.camera.iter().chain(&wanted.noise_table).map(PathBuf::as_path)),
         "floor": wanted.floor,
-        "up": format!("{:?}", wanted.up),
+        "up": up,
+        "world-up": world_up,
         "camera-height": wanted.camera_height,
         "frames": wanted.frames,
         "kept-frames": wanted.kept_frames,
@@ -102,12 +109,15 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Tracks a video, and notes what came of it before its results get their name: where that fails, they are not there and
-    /// the next run makes them again.
+    /// Tracks a video, and notes what came of it while nothing has the name of its results: where they do not get it, they are
+    /// not there and the next run makes them again.
     fn track(&self, source: &Source) -> Outcome<Progress> {
         let target = self.folder.join(&source.folder);
         let seen = Seen::of(source); // before it is read
         let done = self.results(source, &target);
+        if let Ok((_, unfinished)) = &done {
+            unfinished.displace()?;
+        }
         if let Some(manifest) = &self.manifest {
             let written = [target];
             let entry = done.as_ref().map(|(progress, _)| {
@@ -142,7 +152,11 @@ impl Work<'_> {
 
     fn interrupted(&self, signal: i32) -> Outcome {
         remove_all();
-        let next = if self.manifest.is_some() { "the same words go on" } else { "with --resume a run goes on" };
+        let next = if self.manifest.is_some() {
+            "the same words go on"
+        } else {
+            "the same words begin again; with --resume, from the first run on, they go on"
+        };
         say(&format!("interrupted: videos that were not finished have no results; {next}"));
         std::process::exit(128 + signal);
     }

@@ -73,22 +73,32 @@ impl Unfinished {
         Ok(())
     }
 
-    /// Gives the folder its name; what had it before goes.
+    /// Takes the name from what has it, so that nobody takes old results for new ones.
+    ///
+    /// # Errors
+    /// What the machine says.
+    pub(super) fn displace(&self) -> Outcome {
+        if !self.target.exists() {
+            return Ok(());
+        }
+        let failed = |error| Failure::machine(format!("{}: {error}", self.target.display()));
+        fs::rename(&self.target, beside(&self.target, "replaced")).map_err(failed)
+    }
+
+    /// Gives the folder its name, which nothing has; what had it before goes.
     ///
     /// # Errors
     /// What the machine says.
     pub(super) fn finish(self) -> Outcome {
         let failed = |error| Failure::machine(format!("{}: {error}", self.target.display()));
-        let replaced = beside(&self.target, "replaced");
         let mut all = HIDDEN.lock().unwrap_or_else(PoisonError::into_inner);
-        let replaces = self.target.exists();
-        if replaces {
-            fs::rename(&self.target, &replaced).map_err(failed)?;
-        }
         fs::rename(&self.hidden, &self.target).map_err(failed)?;
         all.remove(&self.hidden);
         drop(all);
-        if replaces { fs::remove_dir_all(&replaced).map_err(failed) } else { Ok(()) }
+        match fs::remove_dir_all(beside(&self.target, "replaced")) {
+            Err(error) if error.kind() != ErrorKind::NotFound => Err(failed(error)),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -136,6 +146,8 @@ mod tests {
             assert!(!target.join(text).exists());
             assert!(Unfinished::begin(&target).is_err(), "two at once");
             unfinished.sync().unwrap();
+            unfinished.displace().unwrap();
+            assert!(!target.exists());
             unfinished.finish().unwrap();
             let names: Vec<_> = fs::read_dir(&target).unwrap().map(|entry| entry.unwrap().file_name()).collect();
             assert_eq!(names, [text], "what was there before is gone");
