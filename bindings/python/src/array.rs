@@ -129,10 +129,10 @@ fn of_other(py: Python<'_>, array: &Bound<'_, PyUntypedArray>, options: &ReadOpt
 }
 
 /// About how many pixels a fingerprint looks at.
-const LOOKED_AT: usize = 512;
+const LOOKED_AT: usize = 256;
 
 /// A number that tells whether a map was written to: of evenly spaced pixels (FNV-1a). Of 640 x 480 pixels it looks at one at least
-/// in any square of 48 x 48.
+/// in any square of 39 x 39.
 pub(crate) fn fingerprint(map: AnyView<'_>) -> u64 {
     fn of<T: Pixel>(map: &DepthView<'_, T>) -> u64 {
         let step = (map.area() / LOOKED_AT).max(1);

@@ -158,15 +158,19 @@ def test_a_change_of_a_patch_is_noticed(size):
     depth = np.full(size, 2000, np.uint16)
     detector, random = depthplanes.Detector(), np.random.default_rng(1)
     detector(depth)
-    side = 2 * int(np.ceil(np.sqrt(depth.size / 512)))
+    # Of four times as many pixels as there are for each that is looked at; a square, unless the map is too narrow for it.
+    side = 2 * int(np.ceil(np.sqrt(depth.size / 256)))
+    height = min(side, size[0])
+    width = min(side * side // height, size[1])
+    height = min(side * side // width, size[0])
     for _ in range(40):
         planes = detector(depth)
-        v, u = (random.integers(max(1, length - side)) for length in size)
-        before = depth[v : v + side, u : u + side].copy()
-        depth[v : v + side, u : u + side] += 1
+        v, u = (random.integers(max(1, length - patch)) for length, patch in zip(size, (height, width), strict=True))
+        before = depth[v : v + height, u : u + width].copy()
+        depth[v : v + height, u : u + width] += 1
         with pytest.raises(depthplanes.InputError, match="written to"):
             planes.draw()
-        depth[v : v + side, u : u + side] = before
+        depth[v : v + height, u : u + width] = before
 
 
 def test_a_blank_first_map_settles_nothing(kinect):
