@@ -190,6 +190,10 @@ impl Detector {
         map: impl Into<AnyView<'m>>,
         observer: &mut (dyn FnMut(&'static str) + Send),
     ) -> Result<&Detection> {
+        self.detect_view(map.into(), observer)
+    }
+
+    fn detect_view(&mut self, map: AnyView<'_>, observer: &mut (dyn FnMut(&'static str) + Send)) -> Result<&Detection> {
         self.sensor.check()?;
         let info = self.method.info();
         if self.curved && !info.tells_curved {
@@ -201,7 +205,7 @@ impl Detector {
         }
         self.detection.parts.clear();
         let Detector { method, sensor, threads, curved, joiner, detection, lens } = self;
-        let (map, info, threads, curved) = (map.into(), method.info(), *threads, *curved);
+        let (info, threads, curved) = (method.info(), *threads, *curved);
         let mut joiner = joiner.as_mut();
         if !Lens::is_needed(sensor) {
             let mut job = Job { sensor: *sensor, threads, curved, joiner, observer };
@@ -237,7 +241,10 @@ impl Detector {
     /// # Ok::<(), depthplanes::Error>(())
     /// ```
     pub fn explain<'m>(&mut self, map: impl Into<AnyView<'m>>, at: [usize; 2]) -> Result<Explanation> {
-        let map = map.into();
+        self.explain_view(map.into(), at)
+    }
+
+    fn explain_view(&mut self, map: AnyView<'_>, at: [usize; 2]) -> Result<Explanation> {
         let (width, height) = (map.width(), map.height());
         if at[0] >= width || at[1] >= height {
             return Err(Error::Pixel { at, width, height });

@@ -34,7 +34,10 @@ pub fn describe_labels<'m>(
     labels: &[u16],
     sensor: &Sensor,
 ) -> Result<(Detection, Vec<u16>)> {
-    let map = map.into();
+    describe_view(map.into(), labels, sensor)
+}
+
+fn describe_view(map: AnyView<'_>, labels: &[u16], sensor: &Sensor) -> Result<(Detection, Vec<u16>)> {
     let pixels = map.width() * map.height();
     if labels.len() != pixels {
         return Err(Error::Labels { given: labels.len(), pixels });

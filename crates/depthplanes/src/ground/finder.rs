@@ -83,7 +83,10 @@ impl GroundFinder {
     /// [`Error::NotMetric`] unless the sensor's value kind is metric and its camera known; [`Error::Labels`] if the detection
     /// is not one of a map of that size.
     pub fn find<'m>(&mut self, map: impl Into<AnyView<'m>>, found: &Detection, sensor: &Sensor) -> Result<&Ground> {
-        let map = map.into();
+        self.find_in_view(map.into(), found, sensor)
+    }
+
+    fn find_in_view(&mut self, map: AnyView<'_>, found: &Detection, sensor: &Sensor) -> Result<&Ground> {
         let pixels = map.width() * map.height();
         if [map.width(), map.height()] != [found.width, found.height] || found.labels.len() != pixels {
             return Err(Error::Labels { given: found.labels.len(), pixels });

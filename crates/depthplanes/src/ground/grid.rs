@@ -135,7 +135,10 @@ impl GridMapper {
         sensor: &Sensor,
         ground: &Ground,
     ) -> Result<&OccupancyGrid> {
-        let map = map.into();
+        self.grid_of_view(map.into(), sensor, ground)
+    }
+
+    fn grid_of_view(&mut self, map: AnyView<'_>, sensor: &Sensor, ground: &Ground) -> Result<&OccupancyGrid> {
         self.plan.clear(self.resolution_m);
         if let Some(floor) = &ground.floor {
             let pixels = map.width() * map.height();

@@ -104,11 +104,15 @@ impl Estimator {
     /// # Errors
     /// [`Error::MixedValueKinds`] unless all frames hold depth, or all the same disparity.
     pub fn add<'m>(&mut self, map: impl Into<AnyView<'m>>, value_kind: ValueKind) -> Result<()> {
+        self.add_view(map.into(), value_kind)
+    }
+
+    fn add_view(&mut self, map: AnyView<'_>, value_kind: ValueKind) -> Result<()> {
         let is_depth = |value_kind| matches!(value_kind, ValueKind::Depth { .. });
         if self.seen.is_some_and(|(seen, _)| seen != value_kind && !(is_depth(seen) && is_depth(value_kind))) {
             return Err(Error::MixedValueKinds);
         }
-        let step = with_view!(map.into(), map => self.look(&map, Space::of(value_kind)));
+        let step = with_view!(map, map => self.look(&map, Space::of(value_kind)));
         let finest = self.seen.map_or(step, |(_, finest)| step.min(finest));
         self.seen = Some((value_kind, finest));
         Ok(())

@@ -124,7 +124,16 @@ impl Tracker {
         sensor: &Sensor,
         pose: Option<&CameraPose>,
     ) -> Result<&Tracks> {
-        let map = map.into();
+        self.track_view(map.into(), found, sensor, pose)
+    }
+
+    fn track_view(
+        &mut self,
+        map: AnyView<'_>,
+        found: &Detection,
+        sensor: &Sensor,
+        pose: Option<&CameraPose>,
+    ) -> Result<&Tracks> {
         if [map.width(), map.height()] != [found.width, found.height] {
             return Err(Error::Labels { given: found.labels.len(), pixels: map.width() * map.height() });
         }
