@@ -35,6 +35,8 @@ MACHINE ?= $(shell scripts/machine)
 VENV := .venv/ready
 PY := .venv/bin/python
 PEERS := .venv-peers/ready
+# Features of the tests. What is built for them serves the pages' and the oracles' tests too, which ask for the same.
+TESTED := depthplanes/serde,depthplanes-cli/parquet
 CARGO_FUZZ := target/tools/bin/cargo-fuzz
 
 say = @printf '\n== %s\n' '$(1)'
@@ -79,11 +81,11 @@ clippy:
 
 rust-tests:
 	$(call say,tests)
-	$(CARGO) test --workspace --features depthplanes/serde,depthplanes-cli/parquet
+	$(CARGO) test --workspace --features $(TESTED)
 	$(call say,tests of the library without threads)
 	$(CARGO) test --package depthplanes --no-default-features --test grouping --test detection --test planar --test allocations
 	$(call say,tests of the readers with OpenEXR)
-	$(CARGO) test --package depthplanes-io --features exr,depthplanes/serde --test formats --test broken --test real_files
+	$(CARGO) test --workspace --features $(TESTED),depthplanes-cli/exr --test formats --test broken --test real_files
 
 # All packages are made; the library's is built from what is in it, all of them by `make package`.
 packages:

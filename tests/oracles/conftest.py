@@ -23,7 +23,8 @@ def build(*what):
 
 @pytest.fixture(scope="session")
 def worker_program():
-    return build("-p", "depthplanes", "--example", "oracle_worker") / "examples" / "oracle_worker"
+    # With the feature that the program needs as well, so that the library is compiled once for both.
+    return build("-p", "depthplanes", "--features", "serde", "--example", "oracle_worker") / "examples" / "oracle_worker"
 
 
 @pytest.fixture
@@ -41,7 +42,9 @@ def program():
 
 def of_tests(name):
     """A program as `make test` has built it already; a release of those with many crates takes minutes."""
-    command = f"cargo build --workspace --profile test --features depthplanes/serde --bin {name}"
+    # With a test of its package, and one of those that ask most of other crates: crates with other features would be made anew.
+    tests = "--test broken --test layouts --test rerun"
+    command = f"cargo test --workspace --features depthplanes/serde,depthplanes-cli/parquet {tests} --no-run"
     subprocess.run(command.split(), cwd=ROOT, check=True)
     return ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "debug" / name
 
