@@ -148,7 +148,9 @@ pub(crate) fn fingerprint(map: AnyView<'_>) -> u64 {
                 u += step;
             }
             first += shift;
-            first -= if first < step { 0 } else { step };
+            if first >= step {
+                first -= step;
+            }
         }
         hash
     }
